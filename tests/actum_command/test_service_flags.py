@@ -12,6 +12,7 @@ from actum_command.__main__ import app
 from actum_command.commands import system_commands
 from actum_command.service_settings import DECLARED, SET_BY_UP
 from actum_command.supervising import Program
+from command_lines import invoke
 
 BY_NAME = dict[str, list[str]]
 
@@ -34,12 +35,12 @@ def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> BY_NAME:
 
 
 def up(*arguments: str) -> None:
-    done = CliRunner().invoke(app, ["up", *arguments])
+    done = invoke("up", *arguments)
     assert done.exit_code == 0, done.output
 
 
 def refusal(*arguments: str) -> str:
-    refused = CliRunner().invoke(app, ["up", *arguments])
+    refused = invoke("up", *arguments)
     assert refused.exit_code in (1, 2), refused.output
     return " ".join(refused.stderr.split())
 

@@ -4,7 +4,7 @@ import threading
 import time
 from collections import Counter
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated
 
 import typer
 
@@ -17,11 +17,11 @@ from actum.rewriting import finish as finished
 from actum.rewriting import rewrite, unchanged
 from actum.runtime import stop_on_signals
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, refuse_output, tell_unread
-from actum_command.commands.service_flags import with_history_flags
-from actum_command.commands.terminal import connect, fail, say
-from actum_command.cut_lines import cut_lines
-from actum_command.event_keeping import keep_events
-from actum_command.service_settings import Given
+from actum_command.commands.service_flags import with_flags_of
+from actum_command.commands.terminal import connect, fail, failing_on, say
+from actum_command.history.event_recorder import keep_events
+from actum_command.segment_lines import cut_lines
+from actum_command.service_settings import HISTORY, Given
 from actum_command.streaming import put_all, store_all
 from actum_examples.repetition_recorder import RepetitionRecorder
 from actum_examples.stream_recorder import IMAGES, STREAMS, StreamRecorder
@@ -31,7 +31,7 @@ ALL = "all"
 """The value of `--marks` for every origin."""
 
 
-@with_history_flags
+@with_flags_of(HISTORY)
 def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     output: Annotated[
         Path,
@@ -134,16 +134,11 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     except TakenError as error:
         fail(str(error))
     except OSError as error:
-        _fail_unfinished(output, error)
+        left = f"; {unfinished(output)} holds what was stored: finish it with 'actum record {output} --finish'"
+        fail(f"{output} cannot be written ({error.strerror})" + (left if unfinished(output).exists() else ""))
     _report(stream, output, label)
     if isinstance(storing, RepetitionRecorder):
         _report_cuts(storing, output)
-
-
-def _fail_unfinished(output: Path, error: OSError) -> NoReturn:
-    """Fail, naming what was stored before the error and what to do with it."""
-    left = f"; {unfinished(output)} holds what was stored: finish it with 'actum record {output} --finish'"
-    fail(f"{output} cannot be written ({error.strerror})" + (left if unfinished(output).exists() else ""))
 
 
 def _finish(output: Path) -> None:
@@ -243,9 +238,7 @@ def play(
     with connect() as client:
         if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
             fail(f"no service receives skeletons on {keys.key(keys.SKELETON, client.sensor)}: start pose_preprocessor")
-        try:
+        with failing_on(RecordingError):
             count = put_all(client, recordings, speed, stop)
-        except RecordingError as error:
-            fail(str(error))
     tell_unread(recordings)
     say(f"played {len(recordings)} recordings: {count} messages")
