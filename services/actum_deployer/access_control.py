@@ -70,9 +70,7 @@ def rules(role: Role, sensor: str, ros_domain: int | None) -> Iterator[Rule]:
     ]
     states = [keys.key(keys.STATUS, of, service) for service in role.services]
     tokens = [f"{BASE}/{of}/{token.format(service)}" for service in role.services for token in TOKENS]
-    asked = [keys.pattern(keys.INFO, of), ROUTER_ITSELF] if role.inspects else []
-    asked += [f"{BASE}/{of}/command/**"] if role.commands else []
-    all_at_once = EVERYTHING if role.inspects and not role.services else ()  # people get of it what they may read
+    asked = _asked(role, of)
     places = [keys.claims(of, service) for service in role.services]
     looked = [f"{BASE}/{of}/alive/**"] if role.inspects else []
     if role.speaks_ros and ros_domain is not None:
@@ -83,7 +81,7 @@ def rules(role: Role, sensor: str, ros_domain: int | None) -> Iterator[Rule]:
     yield from _allowed(f"{name} puts", "ingress", ["put"], [*puts, *_advanced(puts), *states])
     yield from _allowed(f"{name} offers", "ingress", ["declare_queryable", "reply"], [*puts, *_advanced(puts), *own])
     yield from _allowed(f"{name} is there", "ingress", ["liveliness_token"], [*tokens, *_advanced(puts)])
-    yield from _allowed(f"{name} wants", "ingress", ["declare_subscriber"], [*reads, *_advanced(reads), *all_at_once])
+    yield from _allowed(f"{name} wants", "ingress", ["declare_subscriber"], _wanted(role, reads))
     yield from _allowed(f"{name} asks", "ingress", ["query"], [*_advanced(reads), *own, *asked])
     yield from _allowed(f"{name} looks", "ingress", LOOKING, [*_advanced(reads), *places, *looked])
     yield from _allowed(f"{name} gets", "egress", ["put"], [*reads, *_advanced(reads)])
@@ -127,6 +125,17 @@ def _ros(topics: Iterable[str], sensor: str, domain: int | None) -> list[str]:
 
 def _advanced(patterns: Iterable[str]) -> list[str]:
     return [f"{pattern}/{ADVANCED}" for pattern in patterns]
+
+
+def _wanted(role: Role, reads: Sequence[str]) -> list[str]:
+    """Return what a role subscribes to: people may name all keys at once, and get what they may read."""
+    return [*reads, *_advanced(reads), *(() if role.services or not role.inspects else EVERYTHING)]
+
+
+def _asked(role: Role, of: str) -> list[str]:
+    """Return what a role asks of its sensor's services, people's of every sensor's, and of its router."""
+    infos = [keys.pattern(keys.INFO, of), ROUTER_ITSELF] if role.inspects else []
+    return [*infos, f"{BASE}/{of}/command/**"] if role.commands else infos
 
 
 def _ids(own: Iterable[Mapping[str, Any]]) -> list[str]:

@@ -105,8 +105,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
     """Return the README of a host, whose credentials are valid until a day."""
     running = list(programs(deployment, host))
     rows = [f"| `{each.name}` | {each.about} | {each.sensor} |" for each in running]
-    renewed = [CREDENTIALS] if deployment.secured else []
-    renewed += [ROUTER_FILE] if host in deployment.routers else []
+    renewed = CREDENTIALS * deployment.secured, ROUTER_FILE * (host in deployment.routers), UNITS
     return README.format(
         name=host.name,
         address=host.address,
@@ -121,7 +120,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
         installed=INSTALLED,
         venv=VENV,
         install=pip_install("all", WHEEL),
-        renewed=" ".join([*renewed, UNITS]),
+        renewed=" ".join(filter(None, renewed)),
         units=UNITS,
         users=USERS,
         owners=OWNERS,

@@ -103,10 +103,5 @@ def test_every_usual_address_stands_in_the_certificate(address: str, tmp_path: P
     assert address in {str(each.value) for each in names.value}
 
 
-def test_hosts_whose_names_differ_by_case_alone_are_refused() -> None:
-    with pytest.raises((SettingsError, InvalidKeyError), match="is not a valid part of a key"):
-        hosts_of("camera=a,Camera=b,compute=c")
-
-
 def test_two_hosts_on_one_machine_have_ports_of_their_own() -> None:
     assert len(hosts_of("camera=127.0.0.1:7447,compute=127.0.0.1:7448")) == 2

@@ -4,7 +4,7 @@ import threading
 import time
 from collections import Counter
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -21,7 +21,7 @@ from actum_command.commands.service_flags import with_flags_of
 from actum_command.commands.terminal import connect, fail, failing_on, say
 from actum_command.history.event_recorder import keep_events
 from actum_command.segment_lines import cut_lines
-from actum_command.service_settings import HISTORY, Given
+from actum_command.service_settings import HISTORY, Given, arguments_of
 from actum_command.streaming import put_all, store_all
 from actum_examples.repetition_recorder import RepetitionRecorder
 from actum_examples.stream_recorder import IMAGES, STREAMS, StreamRecorder
@@ -113,7 +113,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     The --history options apply only with --events.
     """
     if events:
-        keep_events(output, given)
+        keep_events(output, arguments_of(HISTORY, given))
         return
     if finish:
         _finish(output)
@@ -123,10 +123,9 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         fail("--times needs the name of the repeated action: add --label NAME")
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
-    topics = STREAMS | IMAGES if images else STREAMS
     try:
         with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
-            stream = StreamRecorder(recorder, topics, label, _origins(marks, times))
+            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label, _origins(marks, times))
             listening = client.listen(keys.everything(client.sensor))
             say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
             storing = stream if times is None or label is None else _repeating(stream, label, times, stop)
@@ -134,11 +133,16 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     except TakenError as error:
         fail(str(error))
     except OSError as error:
-        left = f"; {unfinished(output)} holds what was stored: finish it with 'actum record {output} --finish'"
-        fail(f"{output} cannot be written ({error.strerror})" + (left if unfinished(output).exists() else ""))
+        _fail_unfinished(output, error)
     _report(stream, output, label)
     if isinstance(storing, RepetitionRecorder):
         _report_cuts(storing, output)
+
+
+def _fail_unfinished(output: Path, error: OSError) -> NoReturn:
+    """Fail, naming what was stored before the error and what to do with it."""
+    left = f"; {unfinished(output)} holds what was stored: finish it with 'actum record {output} --finish'"
+    fail(f"{output} cannot be written ({error.strerror})" + (left if unfinished(output).exists() else ""))
 
 
 def _finish(output: Path) -> None:

@@ -65,7 +65,7 @@ def start(
     stamp_ns: StampOption = None,
 ) -> None:
     """Mark the start of an action; mark its end with 'actum segment end' and the same SEGMENT_ID."""
-    mark = _mark("start", segment_id, agent, hand, label, stamp_ns)
+    mark = _mark("start", segment_id, agent=agent, hand=hand, label=label, stamp_ns=stamp_ns)
     with connect() as client:
         _put(client, mark)
 
@@ -88,7 +88,7 @@ def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOptio
         while _waits_for_enter(f"press Enter to start action {number + 1}, Ctrl-D to quit "):
             number += 1
             segment_id = f"toggle-{client.run}-{number}"
-            _put(client, _mark("start", segment_id, agent, hand, label))
+            _put(client, _mark("start", segment_id, agent=agent, hand=hand, label=label))
             ended = _waits_for_enter("press Enter to end it ")
             _put(client, _mark("end", segment_id))
             for line in answers.until(segment_id, interrupted=_enter_was_pressed):
@@ -97,28 +97,13 @@ def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOptio
                 return
 
 
-def _mark(
-    kind: Literal["start", "end"],
-    segment_id: str,
-    agent: int | None = None,
-    hand: str | None = None,
-    label: str | None = None,
-    stamp_ns: int | None = None,
-) -> Segment:
-    if hand not in (None, "left", "right"):
-        fail(f"--hand {hand!r} is not a hand: use left or right")
-    fields = {
-        "sensor": settings().sensor,
-        "kind": kind,
-        "segment_id": segment_id,
-        "agent": agent,
-        "hand": hand,
-        "label": label,
-        "stamp_ns": stamp_ns,
-        "origin": MANUAL,
-    }
+def _mark(kind: Literal["start", "end"], segment_id: str, **fields: object) -> Segment:
+    """Return a mark with the fields that are given, or fail where it is none."""
+    if fields.get("hand") not in (None, "left", "right"):
+        fail(f"--hand {fields['hand']!r} is not a hand: use left or right")
+    own = {"sensor": settings().sensor, "kind": kind, "segment_id": segment_id, "origin": MANUAL}
     try:
-        return Segment.model_validate(fields)
+        return Segment.model_validate(own | fields)
     except ValidationError as error:
         fail("; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors(include_url=False)))
 

@@ -1,7 +1,7 @@
 """The service `event_recorder`: stores marks, final actions and events as they come."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -12,7 +12,6 @@ from actum.runtime import run
 from actum.states import State
 from actum_command.history.event_files import EventFiles
 from actum_command.history.settings import Settings
-from actum_command.service_settings import HISTORY, Given, arguments_of
 from actum_examples.unstamped_marks import Placed, UnstampedMarks
 
 
@@ -95,7 +94,7 @@ class EventRecorder:
         self.counters.state = f"history not written: {error.strerror}; it tries again with each message"
 
 
-def keep_events(folder: Path, given: Given) -> None:
+def keep_events(folder: Path, arguments: Sequence[str]) -> None:
     """Store events in a folder until SIGTERM or SIGINT, and finish the file that is open then."""
     with ExitStack() as ending:
 
@@ -107,4 +106,4 @@ def keep_events(folder: Path, given: Given) -> None:
             ending.callback(recorder.close)
             return recorder
 
-        run(Settings, build, arguments_of(HISTORY, given))
+        run(Settings, build, arguments)
