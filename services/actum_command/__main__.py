@@ -1,5 +1,6 @@
 """`actum`, or `python -m actum_command`."""
 
+from importlib.util import find_spec
 from typing import Annotated
 
 from actum import __version__
@@ -17,7 +18,6 @@ with needs_extra("actum-command"):
         label_commands,
         pose_model_commands,
         recording_commands,
-        ros2_command,
         scene_commands,
         segment_commands,
         system_commands,
@@ -26,10 +26,9 @@ with needs_extra("actum-command"):
         view_command,
         watch_command,
     )
-    from actum_command.commands.picture_commands import add_picture_commands
     from actum_command.commands.plain_help import PlainTyper
-    from actum_command.commands.router_flags import with_router_flags
-    from actum_command.commands.terminal import say
+    from actum_command.commands.service_flags import with_router_flags
+    from actum_command.commands.terminal import refuse_without, say
 
 app = PlainTyper(
     no_args_is_help=True,
@@ -55,6 +54,22 @@ def _actum(
     """Take what goes before every command."""
 
 
+def _add_picture_commands() -> None:
+    """Add the commands that read or draw pictures; without OpenCV, as in containers, each says what to install."""
+    if find_spec("cv2") is None:
+        for name in ("import", "draw", "markers", "calibrate"):
+            whatever = {"allow_extra_args": True, "ignore_unknown_options": True}
+            refusing = app.command(name, context_settings=whatever, help="Not installed.")
+            refusing(lambda: refuse_without("cv2", "OpenCV", "actum-command"))
+        return
+    from actum_command.commands import calibrate_commands, draw_command, import_commands, markers_command
+
+    app.add_typer(import_commands.app, name="import")
+    app.command("draw")(draw_command.draw)
+    app.command("markers")(markers_command.markers)
+    app.add_typer(calibrate_commands.app, name="calibrate")
+
+
 app.command("demo")(with_router_flags(demo_command.demo))
 app.command("up")(with_router_flags(system_commands.up))
 app.command("router")(system_commands.router)
@@ -62,7 +77,7 @@ app.add_typer(segment_commands.app, name="segment")
 app.command("record")(with_router_flags(recording_commands.record))
 app.command("play")(with_router_flags(recording_commands.play))
 app.add_typer(label_commands.app, name="label")
-add_picture_commands(app)
+_add_picture_commands()
 app.add_typer(pose_model_commands.app, name="models")
 app.command("train")(training_commands.train_command)
 app.command("evaluate")(training_commands.evaluate_command)
@@ -71,7 +86,7 @@ app.command("inspect")(inspect_command.inspect)
 app.command("simulate")(scene_commands.simulate)
 app.command("scene")(with_router_flags(scene_commands.scene))
 app.command("watch")(with_router_flags(watch_command.watch))
-app.command("ros2")(with_router_flags(ros2_command.ros2))
+app.command("ros2")(with_router_flags(system_commands.ros2))
 app.command("view")(with_router_flags(view_command.view))
 app.command("foxglove")(with_router_flags(foxglove_commands.foxglove))
 app.command("export")(foxglove_commands.export)

@@ -1,11 +1,17 @@
-"""Describes messages in words, one line of console markup each."""
+"""Describes messages in words, one line of console markup each; writes the lines of `actum watch`."""
 
+import threading
+import time
+from collections.abc import Callable
 from datetime import datetime
-from functools import singledispatch
 
 import numpy as np
+from pydantic_core import to_json
+from rich.console import Group
 from rich.markup import escape
+from rich.text import Text
 
+from actum.codec import schema_name
 from actum.messages import (
     Action,
     Agent,
@@ -21,11 +27,30 @@ from actum.messages import (
     Truth,
 )
 from actum.node import SECOND_NS
+from actum.runtime import Received
 from actum.skeletons import INDEX
 
 EPOCH_NS = 10**18  # September 2001: later stamps count from 1970, smaller ones from the start of the sensor's clock
 
 BAR = 5  # characters of the bar that shows how much of an action has been done
+
+STALE_S = 0.7  # an action of which nothing more is heard is over: partial ones come with every frame
+
+
+def line(received: Received) -> str:
+    """Describe one received message as console markup."""
+    if received.message is None:
+        return f"[red]{escape(received.key)} {escape(str(received.error))}[/red]"
+    return f"[dim]{time_of(received.message)} {escape(received.key)}[/dim] {describe(received.message)}"
+
+
+def json_line(received: Received) -> str:
+    """Write one received message as JSON: key, schema and every field; or key and error where it does not decode."""
+    if received.message is None:
+        fields = {"key": received.key, "error": str(received.error)}
+    else:
+        fields = {"key": received.key, "schema": schema_name(received.message), **received.message.model_dump()}
+    return to_json(fields, bytes_mode="base64", inf_nan_mode="null").decode()
 
 
 def time_of(message: Message) -> str:
@@ -79,17 +104,30 @@ def _progress(completeness: float) -> str:
     return f"{100 * share:.0f} % {'▆' * full}{'▁' * (BAR - full)}"
 
 
-@singledispatch
 def _content(message: Message) -> str:
-    return message.SCHEMA
+    """Describe what a valid message holds, whichever kind it is of."""
+    text = message.SCHEMA
+    match message:
+        case Skeleton():
+            text = "; ".join(map(_agent, message.agents)) or "nobody"
+        case Posture():
+            text = _posture(message)
+        case Objects():
+            text = "; ".join(map(_object, message.objects)) or "no object"
+        case Image():
+            text = f"{message.format} {message.width}x{message.height}, {len(message.data)} bytes"
+        case Segment():
+            label = "" if message.label is None else f", label {escape(message.label)}"
+            origin = "" if message.origin is None else f", by {escape(message.origin)}"
+            text = f"{message.kind} {escape(message.segment_id)}{label}{origin}"
+        case Truth():
+            done = f'{message.action} {message.object_id} "{message.object_name}"'
+            text = f"{message.kind} {escape(message.segment_id)}: {escape(done)}"
+        case Status():
+            text = f"{escape(message.state)}, {sum(message.rates.values()):.0f} messages/s"
+    return text
 
 
-@_content.register
-def _skeleton(message: Skeleton) -> str:
-    return "; ".join(map(_agent, message.agents)) or "nobody"
-
-
-@_content.register
 def _posture(message: Posture) -> str:
     """Describe the hips' position in the camera frame, and the hands' positions in the egocentric frame."""
     if message.ego_from_camera is None or message.joints_m is None:
@@ -101,34 +139,6 @@ def _posture(message: Posture) -> str:
         f"agent {message.agent}: hips {_point(hips.tolist())}; "
         f"from there (left, up, forward) left hand {_point(left)}, right hand {_point(right)}"
     )
-
-
-@_content.register
-def _objects(message: Objects) -> str:
-    return "; ".join(map(_object, message.objects)) or "no object"
-
-
-@_content.register
-def _image(message: Image) -> str:
-    return f"{message.format} {message.width}x{message.height}, {len(message.data)} bytes"
-
-
-@_content.register
-def _mark(message: Segment) -> str:
-    label = "" if message.label is None else f", label {escape(message.label)}"
-    origin = "" if message.origin is None else f", by {escape(message.origin)}"
-    return f"{message.kind} {escape(message.segment_id)}{label}{origin}"
-
-
-@_content.register
-def _truth(message: Truth) -> str:
-    done = f'{message.action} {message.object_id} "{message.object_name}"'
-    return f"{message.kind} {escape(message.segment_id)}: {escape(done)}"
-
-
-@_content.register
-def _status(message: Status) -> str:
-    return f"{escape(message.state)}, {sum(message.rates.values()):.0f} messages/s"
 
 
 def _agent(agent: Agent) -> str:
@@ -143,3 +153,34 @@ def _object(tracked: TrackedObject) -> str:
 
 def _point(position_m: list[float] | None) -> str:
     return "unknown" if position_m is None else f"({', '.join(f'{metres:.2f}' for metres in position_m)}) m"
+
+
+class OngoingLines:
+    """The newest partial action of each person, until its final one has come or nothing more is heard of it.
+
+    It is fed by one thread and drawn by another.
+    """
+
+    def __init__(self, clock_s: Callable[[], float] = time.monotonic) -> None:
+        self._clock_s = clock_s
+        self._newest: dict[tuple[str, int], tuple[float, Action]] = {}
+        self._lock = threading.Lock()
+
+    def take(self, message: Message | None) -> None:
+        """Note a partial action, or the end of one."""
+        if not isinstance(message, Action):
+            return
+        person = message.sensor, message.agent
+        with self._lock:
+            if not message.final:
+                self._newest[person] = self._clock_s(), message
+            elif person in self._newest and self._newest[person][1].segment_id == message.segment_id:
+                del self._newest[person]
+
+    def __rich__(self) -> Group:
+        """Return a line for each person who is doing something."""
+        oldest_s = self._clock_s() - STALE_S
+        with self._lock:
+            self._newest = {person: (at_s, a) for person, (at_s, a) in self._newest.items() if at_s > oldest_s}
+            actions = [action for _, (_, action) in sorted(self._newest.items())]
+        return Group(*(Text.from_markup(describe_ongoing(action)) for action in actions))

@@ -92,7 +92,12 @@ def _views(
         for camera, stream in enumerate(streams):
             image = stream.newest()
             if image is not None:
-                yield camera, _view(finder, image)
+                name = f"image at {image.stamp_ns / 1e9:.3f} s"
+                try:
+                    view = finder.find(grey_from_message(image, name), name)
+                except UnusablePictureError:
+                    view = None
+                yield camera, view
         stop.wait(POLL_S)
 
 
@@ -128,11 +133,3 @@ class _ImageStream:
             f"no image arrived on {self.key} for {SILENCE_S:g} s: check that the sensor gateway publishes images. "
             f"{REMEDY}"
         )
-
-
-def _view(finder: BoardFinder, image: Image) -> View | None:
-    name = f"image at {image.stamp_ns / 1e9:.3f} s"
-    try:
-        return finder.find(grey_from_message(image, name), name)
-    except UnusablePictureError:
-        return None

@@ -1,11 +1,14 @@
-"""Finds misspelt settings: each service ignores the settings of others, so none notices one that nobody has."""
+"""Finds misspelt words, such as settings: each service ignores the settings of others, so none notices a wrong name."""
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from difflib import get_close_matches
 from pathlib import Path
 
 from actum_command.service_settings import SETTINGS
-from actum_command.spelling import nearest
+
+ALIKE = 0.75
+"""Least similarity (0 to 1, difflib's ratio): two letters changed places in a word of five has 0.8."""
 
 PREFIX = "ACTUM_"
 FILE = PREFIX + "CONFIG"
@@ -14,6 +17,13 @@ OTHERS = ("camera_device", "config", "data", "log", "models", "parent", "router_
 
 KNOWN = sorted({name for settings in SETTINGS.values() for name in settings.model_fields})
 """The settings of all services."""
+
+
+def nearest(word: str, known: Iterable[str]) -> list[str]:
+    """Return the known word that is most like a word, or the one that begins with it; nothing where none does."""
+    words = list(known)
+    begun = [each for each in words if len(word) > 1 and each.startswith(word)]
+    return get_close_matches(word, words, n=1, cutoff=ALIKE) or begun[:1]
 
 
 def misspelt(environment: Mapping[str, str]) -> Iterator[str]:

@@ -9,9 +9,9 @@ from tempfile import TemporaryDirectory
 
 from actum.atomic_file import PRIVATE_FOLDER
 from actum.settings import SettingsError
+from actum_command.misspelt import nearest
 from actum_command.service_settings import Given
 from actum_command.simulated_model import SIMULATED_MODEL
-from actum_command.spelling import nearest
 from model_trainer.original_model import OriginalModel
 from model_trainer.settings import MODEL
 from model_trainer.settings import Settings as TrainerSettings
@@ -62,25 +62,18 @@ def model_in_use(named: Path | None, source: str, given: Given) -> Iterator[Mode
     if original is None and not ships:
         yield ModelInUse(taught)
         return
-    with _folder_of_run(taught.parent) as folder:
-        model = ModelInUse(folder / MODEL, original)
+    try:
+        taught.parent.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
+        folder_of_run = TemporaryDirectory(prefix="run-", dir=taught.parent, ignore_cleanup_errors=True)
+    except OSError as error:
+        raise SettingsError(
+            f"{taught.parent} cannot be used ({error}): set ACTUM_TRAINER_DATA to another folder"
+        ) from None
+    with folder_of_run as folder:  # two systems at a time share no model
+        model = ModelInUse(Path(folder) / MODEL, original)
         if original is not None:
             OriginalModel(original, model.file).copy_changed()
         yield model
-
-
-@contextmanager
-def _folder_of_run(trainer_data: Path) -> Iterator[Path]:
-    """Make a folder in the trainer's for one run, so that two systems at a time do not share a model."""
-    try:
-        trainer_data.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
-        folder = TemporaryDirectory(prefix="run-", dir=trainer_data, ignore_cleanup_errors=True)
-    except OSError as error:
-        raise SettingsError(
-            f"{trainer_data} cannot be used ({error}): set ACTUM_TRAINER_DATA to another folder"
-        ) from None
-    with folder as name:
-        yield Path(name)
 
 
 def lack_of_file(model: ModelInUse) -> str | None:

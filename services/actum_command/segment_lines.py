@@ -1,19 +1,30 @@
-"""The lines of `actum label REC`: each marked segment, its recorded answer, and whether training can use it."""
+"""Segments as lines for a terminal: those of a recording, and the repetitions that were cut from one."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from actum import keys
+from actum.arrays import Array
 from actum.messages import Action, Event
 from actum.node import SECOND_NS
+from actum_examples.cutting.courses import RATE_HZ
+from actum_examples.cutting.repetitions import OTHER_NUMBER, Cuts
 from actum_examples.marked_segment import MarkedSegment
 from actum_examples.take import Take
 from actum_model_trainer.recorded_segments import classifier_input, closed_segments, why_unusable
 from som_classifier.segments import ClosedSegment
 
-NUMBERS = 4
-"""The first columns hold numbers, which are aligned at their ends."""
+SIDES = ">>>><<<<<<<"
+"""How each column is aligned: the first ones hold numbers, which are aligned at their ends."""
+BARS = " ▁▂▃▄▅▆▇█"
+"""Letters for an activity of 0 to `FULL`."""
+FULL = 1.5
+"""Activity that fills a line's height: few movements have more."""
+COLUMNS = 100
+"""Longest line of the course, which fits beside the usual 110 columns of a report."""
 
 
 @dataclass(frozen=True)
@@ -48,17 +59,11 @@ def segment_lines(take: Take) -> list[SegmentLine]:
         for number, (each, problem) in enumerate(zip(take.segments, problems, strict=True), start=1)
     ]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    return [
-        SegmentLine("  " + "  ".join(_aligned(row, widths)).rstrip(), problem is None)
-        for row, problem in zip(rows, problems, strict=True)
-    ]
-
-
-def _aligned(row: Sequence[str], widths: Sequence[int]) -> list[str]:
-    return [
-        cell.rjust(width) if column < NUMBERS else cell.ljust(width)
-        for column, (cell, width) in enumerate(zip(row, widths, strict=True))
-    ]
+    lines = []
+    for row, problem in zip(rows, problems, strict=True):
+        cells = [f"{cell:{side}{width}}" for cell, side, width in zip(row, SIDES, widths, strict=True)]
+        lines.append(SegmentLine("  " + "  ".join(cells).rstrip(), problem is None))
+    return lines
 
 
 def _times(segment: MarkedSegment, first_ns: int) -> tuple[str, str, str]:
@@ -113,3 +118,36 @@ def _in_words(answer: Action | Event) -> str:
     if not answer.valid or answer.action is None:
         return "answered rejected"
     return f"answered {answer.action} {answer.confidence:.2f}" + (" (unknown)" if answer.unknown else "")
+
+
+def cut_lines(cuts: Cuts, first_ns: int) -> Iterator[str]:
+    """Yield the cuts as a table, then the course of the activity with the numbers of the cuts beneath.
+
+    Args:
+        cuts: what was cut.
+        first_ns: stamp that times count from.
+    """
+    yield "  no   start     end  duration  alike"
+    for number, repetition in enumerate(cuts.repetitions, start=1):
+        start_s, end_s = ((stamp - first_ns) / SECOND_NS for stamp in (repetition.start_ns, repetition.end_ns))
+        yield f"  {number:2}  {start_s:5.1f} s {end_s:5.1f} s    {end_s - start_s:4.1f} s   {repetition.likeness:.2f}"
+    yield from (f"  {line}" for line in course_lines(cuts))
+    sure = cuts.sureness > OTHER_NUMBER
+    yield f"  {'sure' if sure else 'look at them'}: {cuts.sureness:.2f}"
+
+
+def course_lines(cuts: Cuts) -> tuple[str, str]:
+    """Return the activity over time as a line of bars, and the number of the cut beneath each."""
+    columns = min(COLUMNS, len(cuts.activity))
+    edges = np.linspace(0, len(cuts.activity), columns + 1).astype(int)
+    heights: Array = np.maximum.reduceat(cuts.activity, edges[:-1]) / FULL * (len(BARS) - 1)
+    bars = "".join(BARS[min(round(height), len(BARS) - 1)] for height in heights)
+    middles_s = (edges[:-1] + edges[1:]) / 2 / RATE_HZ
+    numbers = [" "] * columns
+    for number, repetition in enumerate(cuts.repetitions, start=1):
+        start_s, end_s = (
+            (stamp - cuts.course.start_ns) / SECOND_NS for stamp in (repetition.start_ns, repetition.end_ns)
+        )
+        for column in np.flatnonzero((middles_s >= start_s) & (middles_s <= end_s)):
+            numbers[column] = str(number % 10)
+    return bars, "".join(numbers).rstrip()

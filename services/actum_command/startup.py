@@ -1,4 +1,4 @@
-"""Checks before a whole system starts: its source and its endpoint."""
+"""Before a whole system starts: checks of its source and endpoint, and what is printed of its model."""
 
 import socket
 import threading
@@ -7,8 +7,13 @@ from pathlib import Path
 
 from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings, SettingsError, host_and_port
+from actum_command.model_in_use import NO_MODEL, ModelInUse, lack_of_file
 from actum_command.processes import PAGE, SERVICES
 from actum_command.service_settings import DECLARED, TRAINER, Given, flag_of, service_of
+from actum_command.simulated_model import SIMULATED_MODEL
+from som_classifier.model_loading import ModelError, load_model
+from som_classifier.settings import Settings as ClassifierSettings
+from som_classifier.spotting.spotted import SpottingOptions
 
 CHECK_S = 0.2  # interval of checks for the router: so short that nobody notices the wait
 ROUTER_S = 5.0  # a router is up within a second; services wait for it by themselves where it takes longer
@@ -25,6 +30,16 @@ WITHOUT_CAMERA = ("simulator", "recording")
 
 SENSORS = {"none": None, "simulator": "scene_simulator"}
 """The service that puts the sensor's streams, by source, where it is not the sensor gateway."""
+
+SCENE_MARKS = "the simulated scene marks its own actions, as a switch would"
+"""How actions are found where the simulated scene marks them."""
+FOUND = {
+    "marks": "only marked actions are recognised, and nobody marks here: mark with 'actum segment toggle', or have "
+    "'actum play' play marks beside --source none",
+    "auto": "actions are found by the model; marks are refused, and --segments both takes them as well",
+    "both": "actions are found by the model, or marked by you: 'actum segment toggle'",
+}
+"""How actions are found, by the setting `segments`."""
 
 
 def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
@@ -76,23 +91,19 @@ def refuse_taken(endpoint: str) -> None:
     address = host_and_port(endpoint)
     if address is None or not endpoint.startswith("tcp/"):
         return
+    host, port = address
     try:
-        _bind(*address)
+        family, kind, protocol, _, place = socket.getaddrinfo(
+            host or "0.0.0.0", port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+        )[0]
+        with socket.socket(family, kind, protocol) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind(place)
     except OSError as error:
         raise SettingsError(
             f"the router cannot listen at {endpoint} ({error.strerror}): stop the program that uses this port, or set "
             "ACTUM_CONNECT to an endpoint with another port"
         ) from None
-
-
-def _bind(host: str, port: int) -> None:
-    """Bind a TCP socket to an address, IPv4 or IPv6, and close it again."""
-    family, kind, protocol, _, address = socket.getaddrinfo(
-        host or "0.0.0.0", port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
-    )[0]
-    with socket.socket(family, kind, protocol) as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        probe.bind(address)
 
 
 def wait_for_router(here: ServiceSettings, stop: threading.Event) -> None:
@@ -108,3 +119,40 @@ def wait_for_router(here: ServiceSettings, stop: threading.Event) -> None:
                 return
         except RouterUnreachableError:
             continue
+
+
+def segments_of(given: Given) -> str:
+    """Return which segments are answered, as the classifier's setting says."""
+    named = given.get("segments")
+    return named[-1] if isinstance(named, list) else ClassifierSettings().segments
+
+
+def how_found(segments: str, marked: bool) -> str:
+    """Return in words how actions are found; a setting that there is not is refused by the classifier."""
+    return SCENE_MARKS if marked else FOUND.get(segments, f"segments {segments}")
+
+
+def source_of(model: ModelInUse) -> str:
+    """Return in words where the model in use is from."""
+    if model.original is None:
+        return "the one that was put into use last"
+    if model.original == SIMULATED_MODEL:
+        return "the one for the simulated scene that ships with actum"
+    return f"{model.original}, which is only read: what is put into use on the page replaces a copy"
+
+
+def lack_of_model(model: ModelInUse, segments: str, marked: bool) -> str | None:
+    """Return what the model cannot do with which the system starts; None where it does what is needed."""
+    file = model.original or model.file
+    if not file.exists():
+        return lack_of_file(model) or NO_MODEL
+    try:
+        loaded = load_model(file)
+    except ModelError as error:
+        return str(error)
+    if marked or segments == "marks" or loaded.spotter(SpottingOptions()) is not None:
+        return None
+    return (
+        f"{file} finds no actions by itself, since it was trained without continuous recordings: mark each one, with "
+        "'actum segment toggle' or, in the simulated scene, --marked"
+    )

@@ -1,20 +1,22 @@
-"""Records a sensor's live streams to a file, and plays recordings on its keys."""
+"""Records a sensor's live streams, and plays recordings on its keys as one live session."""
 
 import threading
 import time
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Iterator, Sequence
+from typing import Any, Protocol
 
-from actum import steady_clock
+from actum import keys, steady_clock
 from actum.codec import DecodeError
-from actum.messages import Message, Skeleton
+from actum.joining import joined
+from actum.messages import AUTO, REPLAY, Message, Segment, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum.runtime import Client, Listening, Pace
-from actum_command.playing import schedule
 
 LEAD_IN_S = 0.3  # longer than a service takes to reset at a new session
 POLL_S = 0.005  # a sixth of a frame's interval
+IMAGES = frozenset({keys.COLOR, keys.DEPTH})
+"""Captured streams that objects are derived from."""
 ON_ITS_WAY_S = 0.3  # longest delay of a message that was put before the recording was stopped
 
 
@@ -72,3 +74,68 @@ def put_all(client: Client, recordings: Sequence[Recording], speed: float, stop:
         client.put(message)
         count += 1
     return count
+
+
+def schedule(recordings: Sequence[Recording], session_id: str, start_ns: int, sensor: str) -> Iterator[Message]:
+    """Yield the recordings' messages one recording after another in order of stamp, the first stamp being `start_ns`.
+
+    Stamps rise by a second or more between recordings; intervals and gaps in the numbers inside a recording are
+    exact. Streams get the session id of this playback. Marks keep their ids, with `#2` … added where an earlier
+    recording has used one; they get the origin `replay`, and lose their labels (no live service may know them) and
+    their numbers (this player numbers its own). Marks that a classifier put are left out, as its answers are: the one
+    that hears the playback finds segments of its own. `sensor` renames the viewpoint. Only messages of
+    `playable_topics` are played.
+
+    Raises:
+        RecordingError: a recording is damaged.
+    """
+    taken: set[str] = set()
+
+    def renamed(recording: Recording) -> Iterator[Message]:
+        names = _Names(session_id, sensor, taken)
+        for message in recording.messages(playable_topics(recording)):
+            if not isinstance(message, Segment) or message.origin != AUTO:
+                yield names.renamed(message)
+
+    return joined(map(renamed, recordings), start_ns)
+
+
+def playable_topics(recording: Recording) -> frozenset[keys.Topic]:
+    """Choose marks and captured streams; a derived stream only where the stream it derives from was not recorded."""
+    chosen = {keys.SKELETON, keys.SEGMENT, *IMAGES}
+    if keys.SKELETON not in recording.topics:
+        chosen.add(keys.POSTURE)
+    if not IMAGES & recording.topics:
+        chosen.add(keys.OBJECTS)
+    return recording.topics & chosen
+
+
+class _Names:
+    """Renames one recording's sensor, sessions and segments. `taken` holds the segment ids used in this playback."""
+
+    def __init__(self, session_id: str, sensor: str, taken: set[str]) -> None:
+        self._session_id, self._sensor, self._taken = session_id, sensor, taken
+        self._sessions: dict[str, str] = {}
+        self._segments: dict[tuple[str, str], str] = {}
+
+    def renamed(self, message: Message) -> Message:
+        """Return a message under its new names."""
+        update: dict[str, Any] = {"sensor": self._sensor}
+        if isinstance(message, Segment):
+            update |= {"segment_id": self._segment(message), "label": None, "origin": REPLAY, "seq": None}
+        elif hasattr(message, "session_id"):
+            count = len(self._sessions) + 1
+            name = self._session_id if count == 1 else f"{self._session_id}.{count}"
+            update["session_id"] = self._sessions.setdefault(message.session_id, name)
+        return message.model_copy(update=update)
+
+    def _segment(self, mark: Segment) -> str:
+        recorded = mark.sensor, mark.segment_id
+        if recorded not in self._segments:
+            unique, count = mark.segment_id, 1
+            while unique in self._taken:
+                count += 1
+                unique = f"{mark.segment_id}#{count}"
+            self._taken.add(unique)
+            self._segments[recorded] = unique
+        return self._segments[recorded]

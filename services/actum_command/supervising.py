@@ -122,11 +122,11 @@ class Supervisor:
         """Stop one program for good."""
         ending = [child for child in self._children if child.program is program]
         self._children = [child for child in self._children if child.program is not program]
-        _stop(ending)
+        stop_processes([child.process for child in ending])
 
     def stop(self) -> None:
         """Send every process SIGTERM, and kill those that do not end."""
-        _stop(self._children)
+        stop_processes([child.process for child in self._children])
         self._children.clear()
         self._state.cleanup()
         if self._log:
@@ -143,14 +143,15 @@ class Supervisor:
         )
 
 
-def _stop(children: Sequence[_Child]) -> None:
-    for child in children:
-        if child.process.poll() is None:
-            child.process.send_signal(signal.SIGTERM)
+def stop_processes(processes: Sequence[subprocess.Popen[bytes]]) -> None:
+    """Send processes SIGTERM together, and kill those that do not end within `TERM_S`."""
+    for process in processes:
+        if process.poll() is None:
+            process.send_signal(signal.SIGTERM)
     deadline_s = time.monotonic() + TERM_S
-    for child in children:
+    for process in processes:
         try:
-            child.process.wait(timeout=max(deadline_s - time.monotonic(), 0.01))
+            process.wait(timeout=max(deadline_s - time.monotonic(), 0.01))
         except subprocess.TimeoutExpired:
-            child.process.kill()
-            child.process.wait()
+            process.kill()
+            process.wait()

@@ -4,12 +4,14 @@ A router asks it of each message that comes from a client or another router (ing
 Advanced publishers and subscribers also use keys with the chunk `@adv`, which `**` does not match.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Any, Literal
 
 from actum import keys
 from actum.keys import BASE, Topic
-from actum_deployer.roles import IMAGES, ROS_MARKS, ROS_TOPICS, Role, common_name, identity
+from actum_deployer.deployment import Deployment
+from actum_deployer.roles import IMAGES, ROS_MARKS, ROS_TOPICS, Role, identity, router_identity
 
 Rule = dict[str, Any]
 """One rule of Zenoh's access control."""
@@ -34,40 +36,31 @@ LINK = "routers pass on"
 """The beginning of the names of the rules between routers."""
 
 
-def access_control(
-    subjects: Sequence[tuple[Role, str]],
-    routers: Sequence[str],
-    images_cross: bool,
-    passwords: bool,
-    named: Callable[[str], str] = common_name,
-    ros_domain: int | None = None,
-) -> dict[str, Any]:
-    """Return the section `access_control` of a router's configuration.
+def access_control(deployment: Deployment) -> dict[str, Any]:
+    """Return the section `access_control` of the configuration of each router of a deployment.
 
-    Args:
-        subjects: every role with the sensor it is for; that of people's roles does not matter.
-        routers: the common names of all routers' certificates.
-        images_cross: whether images go from one router to another.
-        passwords: whether a role is known by its user name as well, which is the common name.
-        named: returns the common name of an identity.
-        ros_domain: the domain of the bridge to ROS 2; None where there is none.
+    A role is known by its certificate and, where there are passwords, by its user name as well, which is the same.
     """
-    people_and_services = {identity(role, sensor): list(rules(role, sensor, ros_domain)) for role, sensor in subjects}
-    between = link_rules(images_cross, ros_domain)
-    policies = [{"subjects": [named(who)], "rules": [*_ids(own), TOLD]} for who, own in people_and_services.items()]
+    named, domain = deployment.common_name, deployment.ros_domain
+    routers = [named(router_identity(host.name)) for host in deployment.routers]
+    own = {named(identity(role, sensor)): list(rules(role, sensor, domain)) for role, sensor in deployment.subjects}
+    between = link_rules(deployment.images_cross, domain)
+    [told] = _allowed(TOLD, "egress", WISHES, EVERYTHING)
+    users = {name: {"usernames": [name]} if deployment.passwords else {} for name in own}
+    users |= {name: {} for name in routers}  # who connects learns no user name of whom it connects to
     return {
         "enabled": True,
         "default_permission": "deny",
-        "rules": [_told(), *(rule for own in people_and_services.values() for rule in own), *between],
-        "subjects": [
-            *(_subject(named(who), passwords) for who in people_and_services),
-            *(_subject(name, False) for name in routers),  # who connects learns no user name of whom it connects to
+        "rules": [told, *chain(*own.values()), *between],
+        "subjects": [{"id": name, "cert_common_names": [name], **user} for name, user in users.items()],
+        "policies": [
+            *({"subjects": [name], "rules": [*_ids(its), TOLD]} for name, its in own.items()),
+            {"subjects": routers, "rules": _ids(between)},
         ],
-        "policies": [*policies, {"subjects": list(routers), "rules": _ids(between)}],
     }
 
 
-def rules(role: Role, sensor: str, ros_domain: int | None = None) -> Iterator[Rule]:
+def rules(role: Role, sensor: str, ros_domain: int | None) -> Iterator[Rule]:
     """Yield the rules of a role for a sensor; of people's roles for all sensors."""
     name, of = identity(role, sensor), sensor if role.services else "*"
     puts = [*_patterns(role.puts, of), *_ros(role.ros_puts, of, ros_domain)]
@@ -96,7 +89,7 @@ def rules(role: Role, sensor: str, ros_domain: int | None = None) -> Iterator[Ru
     yield from _allowed(f"{name} sees", "egress", ["liveliness_token"], [*tokens, *_advanced(reads), *looked])
 
 
-def link_rules(images_cross: bool, ros_domain: int | None = None) -> list[Rule]:
+def link_rules(images_cross: bool, ros_domain: int | None) -> list[Rule]:
     """Return the rules between routers: what any role may put, but images only where these may cross."""
     crossing = [topic for topic in keys.TOPICS if images_cross or topic not in IMAGES]
     ros = _ros((*ROS_TOPICS, *ROS_MARKS), "*", ros_domain)
@@ -109,10 +102,6 @@ def link_rules(images_cross: bool, ros_domain: int | None = None) -> list[Rule]:
         *_allowed(f"{LINK} who is there", both, ["liveliness_token"], [*tokens, *_advanced(content)]),
         *_allowed(f"{LINK} wishes", both, WISHES, [*EVERYTHING, *ros, *_advanced(ros), *nodes]),
     ]
-
-
-def _told() -> Rule:
-    return {"id": TOLD, "permission": "allow", "flows": ["egress"], "messages": [*WISHES], "key_exprs": [*EVERYTHING]}
 
 
 def _allowed(
@@ -151,7 +140,3 @@ def _asked(role: Role, of: str) -> list[str]:
 
 def _ids(own: Iterable[Mapping[str, Any]]) -> list[str]:
     return [rule["id"] for rule in own]
-
-
-def _subject(name: str, passwords: bool) -> dict[str, Any]:
-    return {"id": name, "cert_common_names": [name], **({"usernames": [name]} if passwords else {})}

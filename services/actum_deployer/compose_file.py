@@ -49,10 +49,11 @@ def _service(deployment: Deployment, host: Host, program: Program) -> dict[str, 
         "pull_policy": "never",
         **_closed(program),
         "environment": environment(deployment, host, program, ROUTER, DATA),
-        "volumes": [*_credentials(program), *_own(program, suffix(host, program.sensor))],
+        "volumes": _mounts(program, suffix(host, program.sensor)),
     }
     if program.role is None:
-        return {**service, **_router(host)}
+        command = ["router", "--config", f"{INSTALLED}/{ROUTER_FILE}"]
+        return {**service, "command": command, "ports": [f"{host.port}:{host.port}"]}
     service["env_file"] = [{"path": path, "required": False} for path in (SETTINGS, own_settings(program))]
     if program.role is TRAINER:
         service["entrypoint"] = ["python", "-m", program.module]
@@ -81,16 +82,13 @@ def _closed(program: Program) -> dict[str, Any]:
     }
 
 
-def _credentials(program: Program) -> list[str]:
-    """Return the mount of a program's own credentials: as a folder, so that renewed files are seen."""
-    if not program.credentials:
-        return []
-    return [f"./{PurePosixPath(program.credentials).relative_to(INSTALLED)}:{program.credentials}:ro"]
-
-
-def _own(program: Program, several: str) -> list[str]:
-    """Return the other mounts of a program: each sensor has its own models."""
-    mounts = [f"./{FILES}:{INSTALLED}/{FILES}:ro"] if program.role in (GATEWAY, TRACKER) else []
+def _mounts(program: Program, several: str) -> list[str]:
+    """Return the mounts of a program: its credentials as a folder, so that renewed files are seen; its own models."""
+    mounts = []
+    if program.credentials:
+        mounts.append(f"./{PurePosixPath(program.credentials).relative_to(INSTALLED)}:{program.credentials}:ro")
+    if program.role in (GATEWAY, TRACKER):
+        mounts.append(f"./{FILES}:{INSTALLED}/{FILES}:ro")
     if program.role is None:
         mounts.append(f"./{ROUTER_FILE}:{INSTALLED}/{ROUTER_FILE}:ro")
     if program.role in (CLASSIFIER, TRAINER):
@@ -98,10 +96,3 @@ def _own(program: Program, several: str) -> list[str]:
     if program.role in STATEFUL:
         mounts.append(f"state_{program.name}:{DATA.state}")
     return mounts
-
-
-def _router(host: Host) -> dict[str, Any]:
-    return {
-        "command": ["router", "--config", f"{INSTALLED}/{ROUTER_FILE}"],
-        "ports": [f"{host.port}:{host.port}"],
-    }

@@ -12,7 +12,7 @@ from actum.atomic_file import PRIVATE_FOLDER, write_whole
 from actum.runtime.credentials import AUTHORITY, CERTIFICATE, KEY, LOGIN, USER, USERS, login_values
 from actum.settings import SettingsError
 from actum_deployer.certificates import Signed, new_authority, new_certificate, now
-from actum_deployer.deployment import Deployment, Host
+from actum_deployer.deployment import Deployment
 from actum_deployer.roles import ROUTER, identity, router_identity
 
 AUTHORITYS = "authority"
@@ -41,7 +41,14 @@ class Folder:
 def folders(deployment: Deployment, root: Path) -> Iterator[Folder]:
     """Yield every folder of credentials."""
     for host in deployment.hosts:
-        yield from _folders_of(deployment, host, root / host.name / CREDENTIALS)
+        path = root / host.name / CREDENTIALS
+        if host in deployment.routers:
+            addresses = [host.address, ROUTER, "localhost", "127.0.0.1", "::1"]
+            name = deployment.common_name(router_identity(host.name))
+            yield Folder(path / ROUTER, name, list(dict.fromkeys(addresses)))
+        for role, sensor in deployment.roles_of(host):
+            own = identity(role, sensor)
+            yield Folder(path / own, deployment.common_name(own))
     for role in deployment.peoples:
         yield Folder(root / PEOPLES_FOLDER / role.name, deployment.common_name(identity(role, "")))
 
@@ -52,7 +59,17 @@ def passwords_of(deployment: Deployment, root: Path) -> dict[str, str]:
     Raises:
         SettingsError: a file that is there holds none.
     """
-    return _passwords(list(folders(deployment, root))) if deployment.passwords else {}
+    written = list(folders(deployment, root)) if deployment.passwords else []
+    passwords: dict[str, str] = {}
+    for folder in written:
+        try:
+            login = login_values(folder.path)
+        except SettingsError as error:
+            raise SettingsError(f"{error}, or delete {folder.path / USER} to get a new password") from None
+        if login:
+            passwords[login[f"{LOGIN}/user"]] = login[f"{LOGIN}/password"]
+        passwords.setdefault(folder.name, secrets.token_urlsafe(PASSWORD_BYTES))
+    return {folder.name: passwords[folder.name] for folder in written}
 
 
 def write_credentials(
@@ -74,7 +91,9 @@ def write_credentials(
         write_whole(folder.path / CERTIFICATE, signed.certificate_pem, PRIVATE)
         write_whole(folder.path / AUTHORITY, authority.certificate_pem, PRIVATE)
         if passwords:
-            write_whole(folder.path / USER, _login(folder.name, passwords[folder.name]), PRIVATE)
+            login = {"user": folder.name, "password": passwords[folder.name]}
+            document = json.dumps({"transport": {"auth": {"usrpwd": login}}}) + "\n"
+            write_whole(folder.path / USER, document.encode(), PRIVATE)
         else:  # a router that finds earlier ones asks for them
             (folder.path / USER).unlink(missing_ok=True)
             (folder.path / USERS).unlink(missing_ok=True)
@@ -82,16 +101,6 @@ def write_credentials(
             users = "".join(f"{user}:{password}\n" for user, password in sorted(passwords.items()))
             write_whole(folder.path / USERS, users.encode(), PRIVATE)
     _hand_over([folder.path for folder in written if folder.path.parent.name == CREDENTIALS])
-
-
-def _folders_of(deployment: Deployment, host: Host, path: Path) -> Iterator[Folder]:
-    if host in deployment.routers:
-        addresses = [host.address, ROUTER, "localhost", "127.0.0.1", "::1"]
-        name = deployment.common_name(router_identity(host.name))
-        yield Folder(path / ROUTER, name, list(dict.fromkeys(addresses)))
-    for role, sensor in deployment.roles_of(host):
-        own = identity(role, sensor)
-        yield Folder(path / own, deployment.common_name(own))
 
 
 def authority_of(root: Path, may_be_made: bool) -> Signed:
@@ -126,23 +135,6 @@ def authority_of(root: Path, may_be_made: bool) -> Signed:
 def lasting(authority: Signed, days: float) -> float:
     """Return for how many days from now certificates can last: no longer than their authority."""
     return min(days, (authority.certificate.not_valid_after_utc - now()) / timedelta(days=1))
-
-
-def _passwords(written: Sequence[Folder]) -> dict[str, str]:
-    passwords: dict[str, str] = {}
-    for folder in written:
-        try:
-            login = login_values(folder.path)
-        except SettingsError as error:
-            raise SettingsError(f"{error}, or delete {folder.path / USER} to get a new password") from None
-        if login:
-            passwords[login[f"{LOGIN}/user"]] = login[f"{LOGIN}/password"]
-        passwords.setdefault(folder.name, secrets.token_urlsafe(PASSWORD_BYTES))
-    return {folder.name: passwords[folder.name] for folder in written}
-
-
-def _login(user: str, password: str) -> bytes:
-    return json.dumps({"transport": {"auth": {"usrpwd": {"user": user, "password": password}}}}).encode() + b"\n"
 
 
 def make_private(folder: Path) -> None:

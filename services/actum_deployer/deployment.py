@@ -172,7 +172,12 @@ class Deployment:
         """
         try:
             read = TypeAdapter(cls).validate_json((folder / FILE).read_bytes())
-            _check(read.hosts)
+            if not read.hosts:
+                raise SettingsError("the list `hosts` is empty")
+            for host in read.hosts:  # as if it had been said to `actum deploy init`
+                _host(f"{host.name}={host.endpoint}")
+                for sensor in host.sensors:
+                    chunk(sensor)
         except FileNotFoundError:
             raise SettingsError(
                 f"{folder} contains no {FILE}: create the deployment with 'actum deploy init'"
@@ -217,16 +222,6 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     its: dict[str, tuple[str, ...]] = {host.name: (chunk(sensor),) for host, sensor in zip(cameras, named, strict=True)}
     its |= {host.name: tuple(named[i :: len(computing)]) for i, host in enumerate(computing)}
     return tuple(replace(host, sensors=its[host.name]) for host in hosts)
-
-
-def _check(hosts: Sequence[Host]) -> None:
-    """Check what a file says of hosts as if it had been said to `actum deploy init`."""
-    if not hosts:
-        raise SettingsError("the list `hosts` is empty")
-    for host in hosts:
-        _host(f"{host.name}={host.endpoint}")
-        for sensor in host.sensors:
-            chunk(sensor)
 
 
 def _host(text: str) -> Host:

@@ -5,7 +5,7 @@ from datetime import date
 from actum.installing import WHEEL, pip_install
 from actum_deployer.credential_folders import CREDENTIALS, SERVICES_USER
 from actum_deployer.deployment import Deployment, Host
-from actum_deployer.programs import FILES, INSTALLED, ROUTER_FILE, SETTINGS, Program, programs
+from actum_deployer.programs import FILES, INSTALLED, ROUTER_FILE, SETTINGS, programs
 from actum_deployer.roles import BRIDGE
 from actum_deployer.systemd_units import VENV
 
@@ -104,10 +104,12 @@ ACTUM_OBJECTS='{"1": {"name": "cup"}, "2": {"name": "box"}, "3": {"name": "book"
 def readme(deployment: Deployment, host: Host, expiry: date) -> str:
     """Return the README of a host, whose credentials are valid until a day."""
     running = list(programs(deployment, host))
+    rows = [f"| `{each.name}` | {each.about} | {each.sensor} |" for each in running]
+    renewed = CREDENTIALS * deployment.secured, ROUTER_FILE * (host in deployment.routers), UNITS
     return README.format(
         name=host.name,
         address=host.address,
-        table=_table(running),
+        table="\n".join(["| service | what it is | sensor |", "|---|---|---|", *rows]),
         link=_link(deployment, host),
         secured=SECURED.format(expiry=expiry, credentials=CREDENTIALS, user=SERVICES_USER, settings=SETTINGS)
         if deployment.secured
@@ -118,7 +120,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
         installed=INSTALLED,
         venv=VENV,
         install=pip_install("all", WHEEL),
-        renewed=" ".join(_renewed(deployment, host)),
+        renewed=" ".join(filter(None, renewed)),
         units=UNITS,
         users=USERS,
         owners=OWNERS,
@@ -132,18 +134,6 @@ def settings_file(deployment: Deployment, host: Host) -> str:
     """Return what the file for the user's settings holds at first."""
     simulated = deployment.simulated and host.kind == "camera"
     return SIMULATED_SETTINGS if simulated else SETTINGS_OF[host.kind]
-
-
-def _renewed(deployment: Deployment, host: Host) -> list[str]:
-    """Name what is written anew, in a host's folder, that its programs read."""
-    credentials = [CREDENTIALS] if deployment.secured else []
-    router = [ROUTER_FILE] if host in deployment.routers else []
-    return [*credentials, *router, UNITS]
-
-
-def _table(running: list[Program]) -> str:
-    rows = [f"| `{each.name}` | {each.about} | {each.sensor} |" for each in running]
-    return "\n".join(["| service | what it is | sensor |", "|---|---|---|", *rows])
 
 
 def _link(deployment: Deployment, host: Host) -> str:

@@ -78,17 +78,11 @@ def programs(deployment: Deployment, host: Host) -> Iterator[Program]:
         yield _program(deployment, host, role, sensor)
 
 
-def endpoint(deployment: Deployment, host: Host, own_router: str) -> str:
-    """Return where a host's programs connect: its own router, by that name, or the only one there is."""
-    router = deployment.routers[0]
-    own = host in deployment.routers
-    return f"{deployment.transport}/{f'{own_router}:{host.port}' if own else router.endpoint}"
-
-
 def environment(deployment: Deployment, host: Host, program: Program, own_router: str, data: Data) -> dict[str, str]:
     """Return the settings of a program, where its host's router is called `own_router` and it keeps its data so."""
     several = suffix(host, program.sensor)
-    own = {"ACTUM_CONNECT": endpoint(deployment, host, own_router), **program.environment}
+    router = f"{own_router}:{host.port}" if host in deployment.routers else deployment.routers[0].endpoint
+    own = {"ACTUM_CONNECT": f"{deployment.transport}/{router}", **program.environment}
     if program.credentials:
         own["ACTUM_CREDENTIALS"] = program.credentials
     if program.role in (CLASSIFIER, TRAINER):

@@ -6,8 +6,6 @@ and modes as systemd-tmpfiles does. Credentials stay in files, not in `LoadCrede
 renewed only once it is started anew.
 """
 
-from collections.abc import Iterator
-
 from actum_deployer.credential_folders import CREDENTIALS
 from actum_deployer.deployment import Deployment, Host
 from actum_deployer.programs import (
@@ -96,27 +94,27 @@ def users(deployment: Deployment, host: Host) -> str:
 
 def owners(deployment: Deployment, host: Host) -> str:
     """Return who may read which of the installed files, as systemd-tmpfiles reads it."""
-    return "\n".join([MADE, *_owners(deployment, host), ""])
+    lines = [
+        MADE,
+        f"d {INSTALLED} 0755 root root",
+        f"z {INSTALLED}/*.env 0600 root root",
+        f"d {INSTALLED}/{FILES} 0755 root root",
+        f"Z {INSTALLED}/{FILES}/* ~0755 root root",
+    ]
+    if host in deployment.routers:
+        lines.append(f"z {INSTALLED}/{ROUTER_FILE} 0644 root root")
+    if deployment.secured:
+        lines.append(f"d {INSTALLED}/{CREDENTIALS} 0711 root root")
+    for program in programs(deployment, host):
+        if program.credentials:
+            lines.append(f"z {program.credentials} 0750 root {user_of(program.name)}")
+            lines.append(f"z {program.credentials}/* 0640 root {user_of(program.name)}")
+    return "\n".join([*lines, ""])
 
 
 def user_of(name: str) -> str:
     """Return the name of a program's user, and of that user's group."""
     return shortened(f"actum-{name}", LONGEST_USER, "-")
-
-
-def _owners(deployment: Deployment, host: Host) -> Iterator[str]:
-    yield f"d {INSTALLED} 0755 root root"
-    yield f"z {INSTALLED}/*.env 0600 root root"
-    yield f"d {INSTALLED}/{FILES} 0755 root root"
-    yield f"Z {INSTALLED}/{FILES}/* ~0755 root root"
-    if host in deployment.routers:
-        yield f"z {INSTALLED}/{ROUTER_FILE} 0644 root root"
-    if deployment.secured:
-        yield f"d {INSTALLED}/{CREDENTIALS} 0711 root root"
-    for program in programs(deployment, host):
-        if program.credentials:
-            yield f"z {program.credentials} 0750 root {user_of(program.name)}"
-            yield f"z {program.credentials}/* 0640 root {user_of(program.name)}"
 
 
 def _unit(deployment: Deployment, host: Host, program: Program) -> str:
@@ -125,6 +123,7 @@ def _unit(deployment: Deployment, host: Host, program: Program) -> str:
     settings = environment(
         deployment, host, program, "localhost", Data(f"{STATE}/{teacher}", f"{STATE}/{program.name}")
     )
+    command = f"python -m {program.module}" if program.role else f"actum router --config {INSTALLED}/{ROUTER_FILE}"
     groups = ["video"] if sees_devices else [user_of(teacher)] if program.role is CLASSIFIER else []
     return UNIT.format(
         installed=INSTALLED,
@@ -135,14 +134,8 @@ def _unit(deployment: Deployment, host: Host, program: Program) -> str:
         supplementary="".join(f"SupplementaryGroups={group}\n" for group in groups),
         state=STATE_FOLDER.format(name=program.name) if program.role in (*STATEFUL, TRAINER) else "",
         environment="\n".join(f'Environment="{name}={value}"' for name, value in settings.items()),
-        command=_command(program),
+        command=f"{VENV}/bin/{command}",
         devices="" if sees_devices else "PrivateDevices=yes\n",
         memory_mb=program.memory_mb,
         tasks=TASKS,
     )
-
-
-def _command(program: Program) -> str:
-    if program.role is None:
-        return f"{VENV}/bin/actum router --config {INSTALLED}/{ROUTER_FILE}"
-    return f"{VENV}/bin/python -m {program.module}"

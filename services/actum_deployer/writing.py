@@ -56,19 +56,13 @@ def write_deployment(deployment: Deployment, root: Path, days: float, may_be_new
         OSError: a file cannot be written.
     """
     root.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
-    if not deployment.secured:
-        _write_hosts(deployment, root, days)
-        return
     passwords = passwords_of(deployment, root)
-    authority = authority_of(root, may_be_new)
-    _write_hosts(deployment, root, lasting(authority, days))
-    write_credentials(deployment, root, lasting(authority, days), authority, passwords)
-
-
-def _write_hosts(deployment: Deployment, root: Path, days: float) -> None:
+    authority = authority_of(root, may_be_new) if deployment.secured else None
     deployment.save(root)
     for host in deployment.hosts:
-        _write_host(deployment, host, root / host.name, days)
+        _write_host(deployment, host, root / host.name, lasting(authority, days) if authority else days)
+    if authority is not None:
+        write_credentials(deployment, root, lasting(authority, days), authority, passwords)
 
 
 def revoked_before(root: Path) -> Mapping[str, int]:

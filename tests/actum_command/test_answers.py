@@ -9,7 +9,6 @@ from typer.testing import CliRunner
 from actum import keys
 from actum.messages import Action, Event, Message, Segment
 from actum.runtime import Received
-from actum_command import answers
 from actum_command.__main__ import app
 from actum_command.commands import segment_commands
 from empty_messages import action
@@ -67,7 +66,7 @@ class Live:
 def live(monkeypatch: pytest.MonkeyPatch) -> Iterator[Live]:
     client = Live()
     monkeypatch.setattr(segment_commands, "connect", lambda: client)
-    monkeypatch.setattr(answers, "ANSWER_S", 0.1)
+    monkeypatch.setattr(segment_commands, "ANSWER_S", 0.1)
     return client
 
 
@@ -105,7 +104,7 @@ def test_where_no_answer_comes_it_is_said_and_the_switch_goes_on(live: Live) -> 
 
 
 def test_who_does_not_wait_is_told_with_the_next_answer(live: Live) -> None:
-    switch = answers.Answers(live)  # type: ignore[arg-type]
+    switch = segment_commands.Answers(live)  # type: ignore[arg-type]
     assert list(switch.until("a", interrupted=lambda: True)) == []
     live.answer("a", Event)
     live.answer("b", Event)

@@ -7,14 +7,12 @@ import cv2
 import numpy as np
 import pypdfium2
 import pytest
-from typer.testing import CliRunner
 
 from actum.calibration import Calibration
-from actum.recorder import Recorder
 from actum_calibrator.board import Board
-from actum_command.__main__ import app
 from actum_command.commands import calibrate_up_command
 from boards import Lens, facing, good_poses, photograph
+from command_lines import invoke, written
 from people import FRAME_NS, STANDING, lacking, reaches, skeleton
 
 BOARD, LENS = Board(), Lens()
@@ -25,7 +23,7 @@ PLACES = (((-0.05, 0, 0.6), (30, 0, 0)), ((0.05, 0.05, 0.7), (0, 32, 0)), ((0.0,
 
 
 def run(*arguments: str | Path, code: int = 0) -> str:
-    done = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    done = invoke(*arguments)
     assert done.exit_code == code, done.output
     return " ".join((done.output if code == 0 else done.output + done.stderr).split())
 
@@ -155,12 +153,8 @@ def test_ids_that_are_none_are_refused(tmp_path: Path, ids: str) -> None:
 def test_how_a_camera_is_tilted_is_found_in_a_recording(tmp_path: Path) -> None:
     standing, acting = tmp_path / "standing.mcap", tmp_path / "acting.mcap"
     looking_up = cv2.Rodrigues(np.radians([-12.0, 0.0, 0.0]))[0]
-    with Recorder(standing, person="1", source="test") as recorder:
-        for k in range(70):
-            recorder.write(skeleton(k * FRAME_NS, STANDING @ looking_up.T))
-    with Recorder(acting, person="1", source="test") as recorder:
-        for message in reaches(30):
-            recorder.write(message)
+    written(standing, *(skeleton(k * FRAME_NS, STANDING @ looking_up.T) for k in range(70)))
+    written(acting, *reaches(30), person="1")
 
     said = run("calibrate", "up", standing)
     pitch_deg = float(said.split("looks up by ")[1].split()[0])
@@ -177,7 +171,7 @@ def test_who_flickers_in_and_out_of_view_is_told_what_to_do_no_more_than_twice_a
     footless = lacking(STANDING, "left_foot", "right_foot")
     frames = [skeleton(k * FRAME_NS, STANDING if k % 2 else footless) for k in range(150)]
     monkeypatch.setattr(calibrate_up_command, "_live", lambda: iter(frames))
-    done = CliRunner().invoke(app, ["calibrate", "up"])
+    done = invoke("calibrate", "up")
     told = [line for line in done.stdout.splitlines() if line.strip()]
     assert "not visible: left_foot" in told[0]
     assert "stay like that" in told[1]

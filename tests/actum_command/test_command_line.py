@@ -16,13 +16,11 @@ from typer.testing import CliRunner
 
 from actum import __version__
 from actum.messages import Segment
-from actum.recorder import Recorder
 from actum.recording import Recording
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
 from actum_command.__main__ import app
 from actum_command.commands import (
-    continuous_evaluation,
     demo_command,
     recording_options,
     segment_commands,
@@ -31,9 +29,10 @@ from actum_command.commands import (
     training_commands,
 )
 from actum_command.commands.plain_help import PlainCommand, PlainTyper
+from actum_command.commands.training_commands import preset_named
 from actum_command.demo import marked, unmarked
-from actum_command.preset_settings import preset_named
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from command_lines import invoke, refused, written
 from people import FRAME_NS
 from performers import mark, performance
 from recognisers import tiny_model
@@ -73,19 +72,7 @@ def test_every_command_explains_itself_without_pythons_types(command: str) -> No
 
 
 def test_the_version_is_told() -> None:
-    assert CliRunner().invoke(app, ["--version"]).stdout == f"actum {__version__}\n"
-
-
-def refusal(*arguments: str) -> str:
-    refused = CliRunner().invoke(app, list(arguments))
-    assert refused.exit_code == 1, refused.output
-    assert isinstance(refused.exception, SystemExit), refused.exception
-    return " ".join(refused.stderr.split())
-
-
-def test_what_is_no_recording_is_refused_by_name(tmp_path: Path) -> None:
-    (tmp_path / "a.mcap").write_text("nothing of the kind")
-    assert "a.mcap" in refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"))
+    assert invoke("--version").stdout == f"actum {__version__}\n"
 
 
 @pytest.mark.parametrize(
@@ -103,34 +90,30 @@ def test_what_is_no_recording_is_refused_by_name(tmp_path: Path) -> None:
 def test_a_file_that_would_be_named_as_another_kind_is_refused_with_the_right_name(
     command: str, name: str, right: str, tmp_path: Path
 ) -> None:
-    said = refusal(*(word.format(tmp_path / name) for word in command.split()))
+    said = refused(*(word.format(tmp_path / name) for word in command.split()))
     assert f"{tmp_path / name} does not end in {Path(right).suffix}" in said
     assert said.endswith(f"name the file {tmp_path / right}")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_folder_that_would_be_named_as_a_picture_is_refused(tmp_path: Path) -> None:
-    assert "give a folder" in refusal("inspect", "model.npz", "-o", str(tmp_path / "map.png"))
-
-
-def test_a_folder_without_recordings_is_refused(tmp_path: Path) -> None:
-    assert "no recordings" in refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"))
-
-
-def test_a_foreign_model_is_refused_with_the_remedy(tmp_path: Path) -> None:
-    (tmp_path / "m.npz").write_bytes(b"PK not a model")
-    assert "actum train" in refusal("evaluate", str(tmp_path / "m.npz"), str(tmp_path))
-
-
-def test_a_file_that_is_no_model_is_refused_without_advice_to_load_it_unsafely(tmp_path: Path) -> None:
-    (tmp_path / "a.mcap").write_text("a recording, named where the model is to stand")
-    refused = refusal("evaluate", str(tmp_path / "a.mcap"), str(tmp_path))
-    assert "a.mcap: the file is not a model of actum" in refused
-    assert "pickle" not in refused
-
-
-def test_a_model_alone_is_nothing_to_evaluate() -> None:
-    assert "a model and at least one recording are needed" in refusal("evaluate", "m.npz")
+@pytest.mark.parametrize(
+    ("command", "content", "told"),
+    [
+        ("train {0} -o {0}/m.npz", "nothing of the kind", "a.mcap"),
+        ("train {0} -o {0}/m.npz", None, "no recordings"),
+        ("inspect model.npz -o {0}/map.png", None, "give a folder"),
+        ("evaluate {0}/a.mcap {0}", "PK not a model", "actum train"),
+        ("evaluate {0}/a.mcap {0}", "a recording, named as the model", "a.mcap: the file is not a model of actum"),
+        ("evaluate m.npz", None, "a model and at least one recording are needed"),
+        ("watch everything", None, "event"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_by_name(command: str, content: str | None, told: str, tmp_path: Path) -> None:
+    if content is not None:
+        (tmp_path / "a.mcap").write_text(content)
+    said = refused(*command.format(tmp_path).split())
+    assert told in said
+    assert "pickle" not in said, "nobody is advised to load a file unsafely"
 
 
 @pytest.mark.parametrize(
@@ -145,12 +128,12 @@ def test_a_file_is_not_passed_over_by_a_source_that_plays_none(
     source: str, remedy: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
-    assert remedy in refusal("up", "--source", source, "--path", "a.mcap")
+    assert remedy in refused("up", "--source", source, "--path", "a.mcap")
 
 
 def test_an_unknown_preset_is_refused_with_the_known_ones(tmp_path: Path) -> None:
-    assert CliRunner().invoke(app, ["simulate", str(tmp_path / "a.mcap"), "--repetitions", "1"]).exit_code == 0
-    message = refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"), "--preset", "best")
+    assert invoke("simulate", tmp_path / "a.mcap", "--repetitions", "1").exit_code == 0
+    message = refused("train", tmp_path, "-o", tmp_path / "m.npz", "--preset", "best")
     assert "is not a preset" in message
     assert "paper" in message
 
@@ -168,7 +151,7 @@ def test_a_setting_that_a_preset_does_not_know_is_refused_with_the_known_ones(
     tmp_path: Path, given: tuple[str, str], told: str
 ) -> None:
     preset, setting = given
-    message = refusal("train", str(tmp_path), "-o", str(tmp_path / "m.npz"), "--preset", preset, "--set", setting)
+    message = refused("train", tmp_path, "-o", tmp_path / "m.npz", "--preset", preset, "--set", setting)
     assert told in message
     assert "attention" in message
 
@@ -177,29 +160,25 @@ def test_the_papers_preset_is_trained_as_it_was_set() -> None:
     preset = preset_named("paper", ["attention=all", "origin=hips"])
     assert isinstance(preset, PaperPreset)
     assert preset == replace(PAPER, posture=PostureInput(PAPER.posture.axes, "hips", "all"))
-    assert preset_named("paper") is PAPER
+    assert preset_named("paper", ()) is PAPER
 
 
 def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
-    runner = CliRunner()
-    assert runner.invoke(app, ["simulate", str(tmp_path / "a.mcap"), "--repetitions", "2"]).exit_code == 0
-    trained = runner.invoke(app, ["train", str(tmp_path / "a.mcap"), "-o", str(tmp_path / "m.npz")])
+    assert invoke("simulate", tmp_path / "a.mcap", "--repetitions", "2").exit_code == 0
+    trained = invoke("train", tmp_path / "a.mcap", "-o", tmp_path / "m.npz")
     assert "10 samples of 5 actions" in " ".join(trained.output.split())
-    assert "Few examples: " in trained.output and "There are only 14 s of background" in " ".join(
-        trained.output.split()
-    )
+    assert "Few examples: " in trained.output
+    assert "There are only 14 s of background" in " ".join(trained.output.split())
     report = tmp_path / "report.json"
-    command = ["evaluate", str(tmp_path / "m.npz"), str(tmp_path / "a.mcap"), "--json", str(report)]
-    assert "accuracy" in runner.invoke(app, command).output
+    command = ["evaluate", tmp_path / "m.npz", tmp_path / "a.mcap", "--json", report]
+    assert "accuracy" in invoke(*command).output
     assert '"predictions"' in report.read_text()
 
 
 def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:
-    model = str(tmp_path / "m.npz")
-    assert CliRunner().invoke(app, ["train", str(examples), "-o", model, "--preset", "paper"]).exit_code == 0
-    assert "cannot find actions without marks: train it again" in refusal(
-        "evaluate", "--continuous", model, str(examples)
-    )
+    model = tmp_path / "m.npz"
+    assert invoke("train", examples, "-o", model, "--preset", "paper").exit_code == 0
+    assert "cannot find actions without marks: train it again" in refused("evaluate", "--continuous", model, examples)
 
 
 def test_what_is_found_without_marks_is_told_and_written(
@@ -213,9 +192,9 @@ def test_what_is_found_without_marks_is_told_and_written(
     first = Detection("a.mcap", 1, 0, 10**9, 2 * 10**9, "lift", 0.9)
     truth, truth_missed = Truth("a.mcap", 1, 0, 10**9, "lift"), Truth("a.mcap", 1, 5 * 10**9, 6 * 10**9, "push")
     monkeypatch.setattr(training_commands, "load_model", lambda _: tiny_model())
-    monkeypatch.setattr(continuous_evaluation, "found_by", found)
+    monkeypatch.setattr(training_commands, "found_by", found)
     report = tmp_path / "report.json"
-    done = CliRunner().invoke(app, ["evaluate", "--continuous", "m.npz", str(examples), "--json", str(report)])
+    done = invoke("evaluate", "--continuous", "m.npz", examples, "--json", report)
     assert "1 of 2 actions found, 0 false detections" in done.output
     written = json.loads(report.read_text())
     assert (written["detections"][0]["label"], written["truths"][1]["label"]) == ("lift", "push")
@@ -225,7 +204,7 @@ def test_what_is_found_without_marks_is_told_and_written(
 def test_everyday_doings_lengthen_an_example_and_are_not_marked(tmp_path: Path) -> None:
     def simulated(*choices: str) -> tuple[float, int]:
         path = tmp_path / f"{choices[1]}.mcap"
-        assert CliRunner().invoke(app, ["simulate", str(path), "--repetitions", "1", *choices]).exit_code == 0
+        assert invoke("simulate", path, "--repetitions", "1", *choices).exit_code == 0
         messages = list(Recording(path).messages())
         return messages[-1].stamp_ns / 1e9, sum(isinstance(message, Segment) for message in messages)
 
@@ -237,14 +216,10 @@ def test_everyday_doings_lengthen_an_example_and_are_not_marked(tmp_path: Path) 
     assert (idle_s >= 120, marks_without_actions) == (True, 0)
 
 
-def test_an_unknown_topic_to_watch_is_refused_with_the_known_ones() -> None:
-    assert "event" in refusal("watch", "everything")
-
-
 @pytest.fixture(scope="module")
 def examples(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("examples") / "a.mcap"
-    assert CliRunner().invoke(app, ["simulate", str(path), "--repetitions", "2"]).exit_code == 0
+    assert invoke("simulate", path, "--repetitions", "2").exit_code == 0
     return path
 
 
@@ -257,9 +232,9 @@ def broken_off(examples: Path) -> Path:
 
 
 def test_training_and_evaluating_name_the_recording_that_breaks_off(broken_off: Path, tmp_path: Path) -> None:
-    model = str(tmp_path / "m.npz")
-    for command in (["train", str(broken_off), "-o", model, "--preset", "paper"], ["evaluate", model, str(broken_off)]):
-        done = CliRunner().invoke(app, command)
+    model = tmp_path / "m.npz"
+    for command in (["train", broken_off, "-o", model, "--preset", "paper"], ["evaluate", model, broken_off]):
+        done = invoke(*command)
         assert done.exit_code == 0
         assert f"{broken_off} is truncated" in done.stdout
 
@@ -272,8 +247,8 @@ def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
     (tmp_path / "file").touch()
     monkeypatch.setattr(training_commands, "load_model", lambda _: pytest.fail("the model was loaded"))
     monkeypatch.setattr(recording_options, "select", lambda *_: pytest.fail("the recordings were opened"))
-    assert place in refusal("evaluate", "m.npz", "a.mcap", "--json", str(tmp_path / place))
-    assert place in refusal("train", "a.mcap", "-o", str(tmp_path / place))
+    assert place in refused("evaluate", "m.npz", "a.mcap", "--json", str(tmp_path / place))
+    assert place in refused("train", "a.mcap", "-o", str(tmp_path / place))
 
 
 @pytest.mark.parametrize(
@@ -291,7 +266,7 @@ def test_settings_that_cannot_be_used_end_a_command_with_one_line(
     name: str, value: str, complaint: str, command: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(name, value)
-    refused = CliRunner().invoke(app, command.split())
+    refused = invoke(*command.split())
     assert isinstance(refused.exception, SystemExit), refused.exception
     assert (refused.exit_code, refused.stderr.count("\n")) == (1, 1)
     assert complaint in refused.stderr
@@ -306,9 +281,10 @@ def served(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
     return endpoints
 
 
+@pytest.mark.parametrize("option", ["--listen", "--link"])
 @pytest.mark.parametrize("endpoint", ["udp7551", "tcp/127.0.0.1:99999", "7552", "tcp/127.0.0.1"])
-def test_a_router_refuses_what_is_no_endpoint(endpoint: str, served: list[str | None]) -> None:
-    assert f"'{endpoint}' is not an endpoint: use tcp/host:port" in refusal("router", "--listen", endpoint)
+def test_a_router_refuses_what_is_no_endpoint(option: str, endpoint: str, served: list[str | None]) -> None:
+    assert f"'{endpoint}' is not an endpoint: use tcp/host:port" in refused("router", option, endpoint)
     assert served == []
 
 
@@ -322,9 +298,9 @@ def test_a_router_listens_on_either_family(host: str, served: list[str | None]) 
             pytest.skip("this machine has no IPv6")
         port = probe.getsockname()[1]
         probe.listen()
-        taken = refusal("router", "--listen", f"tcp/{host}:{port}")
+        taken = refused("router", "--listen", f"tcp/{host}:{port}")
     assert "the router cannot listen at" in taken
-    assert CliRunner().invoke(app, ["router", "--listen", f"tcp/{host}:{port}"]).exit_code == 0
+    assert invoke("router", "--listen", f"tcp/{host}:{port}").exit_code == 0
     assert served == [f"tcp/{host}:{port}"]
 
 
@@ -333,7 +309,7 @@ def test_a_router_listens_on_either_family(host: str, served: list[str | None]) 
     [([""], "segment_id: "), (["x" * 1000], "segment_id: "), (["a", "--agent", "9999999999"], "agent: ")],
 )
 def test_a_mark_that_is_none_is_refused_without_a_router(arguments: list[str], complaint: str) -> None:
-    refused = CliRunner().invoke(app, ["segment", "start", *arguments])
+    refused = invoke("segment", "start", *arguments)
     assert (refused.exit_code, refused.stderr.count("\n")) == (1, 1)
     assert complaint in refused.stderr
 
@@ -384,12 +360,12 @@ def test_a_demo_ends_where_it_is_and_leaves_no_files(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(tempfile, "tempdir", tmp_path)
     monkeypatch.setattr(demo_command, "refuse_taken", lambda _: None)
     monkeypatch.setattr(module, step, lambda *_: signal.raise_signal(number))
     for of, later in ((marked, "nearest_neighbour_baseline"), (unmarked, "run")):
         monkeypatch.setattr(of, later, lambda *_: pytest.fail("it went on"))
-    interrupted = CliRunner().invoke(app, ["demo", *way])
+    interrupted = invoke("demo", *way)
     assert isinstance(interrupted.exception, SystemExit), interrupted.exception
     assert interrupted.exit_code == 128 + number
     assert list(tmp_path.iterdir()) == []
@@ -397,15 +373,19 @@ def test_a_demo_ends_where_it_is_and_leaves_no_files(
 
 def test_a_router_refuses_a_configuration_that_zenoh_refuses(tmp_path: Path) -> None:
     (tmp_path / "router.json5").write_text("{nonsense")
-    assert "the router cannot start on " in refusal("router", "--config", str(tmp_path / "router.json5"))
+    assert "the router cannot start on " in refused("router", "--config", tmp_path / "router.json5")
 
 
 def test_why_nothing_could_be_learnt_is_said_before_that_it_could_not(tmp_path: Path) -> None:
     skeletons, _ = performance(["lift"])
-    with Recorder(tmp_path / "short.mcap", person="1", source="test") as recorder:
-        for message in [*skeletons, mark("start", 2 * FRAME_NS, "s1", "lift"), mark("end", 3 * FRAME_NS, "s1")]:
-            recorder.write(message)
-    done = CliRunner().invoke(app, ["train", str(tmp_path), "-o", str(tmp_path / "model.npz")])
+    written(
+        tmp_path / "short.mcap",
+        *skeletons,
+        mark("start", 2 * FRAME_NS, "s1", "lift"),
+        mark("end", 3 * FRAME_NS, "s1"),
+        person="1",
+    )
+    done = invoke("train", tmp_path, "-o", tmp_path / "model.npz")
     assert done.exit_code == 1
     assert "s1 of " in done.stdout and "was not used" in done.stdout
     assert "2 usable frames, at least 3 are needed" in done.stdout
@@ -444,7 +424,7 @@ def test_every_command_holds_its_numbers_to_that() -> None:
     [("recrod", "record"), ("eval", "evaluate"), ("scnee", "scene"), ("nonsense", None), ("tools", None), ("x", None)],
 )
 def test_a_command_is_suggested_only_where_one_is_like_what_was_typed(typed: str, meant: str | None) -> None:
-    refused = CliRunner().invoke(app, [typed])
+    refused = invoke(typed)
     assert refused.exit_code == 2
     assert f"No such command '{typed}'." in refused.stderr
     assert ("Did you mean" in refused.stderr) == (meant is not None)

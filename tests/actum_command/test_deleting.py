@@ -1,19 +1,18 @@
 """To delete an example means one thing, whoever is asked for it; what was mirrored stays whole in every command."""
 
 import shutil
+from itertools import chain
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from actum import keys
 from actum.messages import Agent, Skeleton, segment_marks
-from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_command.__main__ import app
 from actum_examples.stored_changes import mirror_image
 from actum_examples.take import MIRRORED
 from actum_model_trainer.samples import samples_from
+from command_lines import printed, refused, written
 from people import FRAME_NS, reaching, skeleton
 from teaching import Teacher
 
@@ -29,27 +28,12 @@ def bodies() -> list[Skeleton]:
 def path(tmp_path: Path) -> Path:
     """Two people; the first one's two examples overlap, so that frames 20 to 30 belong to both."""
     path = tmp_path / "take-0001.mcap"
-    with Recorder(path, person="anna", source="test") as recorder:
-        for body in bodies():
-            recorder.write(body)
-        for name, first, last, label in (("one", 5, 30, "wave"), ("two", 20, 50, "nod"), ("three", 60, 80, "wave")):
-            for mark in segment_marks(
-                FIRST_NS + first * FRAME_NS, FIRST_NS + last * FRAME_NS, "kinect0", name, label, 1
-            ):
-                recorder.write(mark)
-    return path
-
-
-def run(*arguments: object) -> str:
-    done = CliRunner().invoke(app, [*map(str, arguments)])
-    assert done.exit_code == 0, done.output
-    return done.stdout
-
-
-def refused(*arguments: object) -> str:
-    ended = CliRunner().invoke(app, [*map(str, arguments)])
-    assert ended.exit_code == 1, ended.output
-    return ended.stderr
+    examples = (("one", 5, 30, "wave"), ("two", 20, 50, "nod"), ("three", 60, 80, "wave"))
+    marks = [
+        segment_marks(FIRST_NS + first * FRAME_NS, FIRST_NS + last * FRAME_NS, "kinect0", name, label, 1)
+        for name, first, last, label in examples
+    ]
+    return written(path, *bodies(), *chain(*marks))
 
 
 def by_trainer(path: Path, command: str, segment_id: str, **fields: int) -> None:
@@ -70,7 +54,7 @@ def test_a_deleted_example_takes_along_the_frames_that_no_other_needs(path: Path
     if how == "trainer":
         by_trainer(path, "delete", "one")
     else:
-        run("label", "delete", path, "one")
+        printed("label", "delete", path, "one")
     seen = [[agent.agent for agent in agents] for agents in people(path)]
     assert seen == [[2] if 5 <= frame < 20 else [1, 2] for frame in range(FRAMES)]
     (stream,) = [each for each in samples_from([Recording(path)]).streams if each.agent == 1]
@@ -97,7 +81,7 @@ def test_the_frames_follow_a_mirrored_segment_that_is_moved(path: Path) -> None:
     by_trainer(path, "mirror", "three")
     assert mirrored_frames(path) == set(range(60, 81))
     later_s = 5 * FRAME_NS / 1e9
-    run("label", "move", path, 3, "--start", f"+{later_s}", "--end", f"+{later_s}")
+    printed("label", "move", path, 3, "--start", f"+{later_s}", "--end", f"+{later_s}")
     assert mirrored_frames(path) == set(range(65, 86))
 
 
@@ -110,5 +94,5 @@ def test_a_mirrored_segment_does_not_reach_into_a_plain_one(path: Path) -> None:
 
 def test_nothing_is_mirrored_once_its_segment_is_deleted(path: Path) -> None:
     by_trainer(path, "mirror", "three")
-    run("label", "delete", path, "three")
+    printed("label", "delete", path, "three")
     assert Recording(path).metadata[MIRRORED] == "[]"

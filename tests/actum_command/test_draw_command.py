@@ -7,15 +7,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from actum.messages import Agent
 from actum.skeletons import INDEX
-from actum_command import video_joints
-from actum_command.__main__ import app
+from actum_command.commands import draw_command
 from actum_command.skeleton_overlay import LEFT, MIDDLE, RIGHT, drawn, sheet
 from camera_bodies import K, as_seen, projected, standing_at
 from camera_videos import write_video
+from command_lines import invoke
 from people import STANDING, lacking, listed
 from sensor_gateway.lens import Lens
 from sensor_gateway.people.landmarks import Landmarks
@@ -52,10 +51,10 @@ def test_pictures_are_put_side_by_side_row_by_row() -> None:
 def test_without_a_model_the_command_says_how_to_get_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ACTUM_POSE_MODEL", str(tmp_path / "pose.task"))
     video = write_video(tmp_path / "a.avi")
-    refused = CliRunner().invoke(app, ["draw", str(video), "-o", str(tmp_path / "a.png")])
+    refused = invoke("draw", video, "-o", tmp_path / "a.png")
     assert refused.exit_code == 1
     assert "actum models fetch" in " ".join(refused.stderr.split())
-    imported = CliRunner().invoke(app, ["import", "video", str(tmp_path), str(tmp_path / "out")])
+    imported = invoke("import", "video", tmp_path, tmp_path / "out")
     assert imported.exit_code == 1
     assert "actum models fetch" in " ".join(imported.stderr.split())
 
@@ -91,11 +90,11 @@ def test_every_frame_is_seen_but_only_those_asked_for_are_drawn(
         backgrounds.append(image_bgr.mean())
         return drawn(image_bgr, agents, lens, caption)
 
-    monkeypatch.setattr(video_joints, "estimator_of", lambda _: nullcontext(model))
-    monkeypatch.setattr(video_joints, "drawn", counted)
+    monkeypatch.setattr(draw_command, "estimator_of", lambda _: nullcontext(model))
+    monkeypatch.setattr(draw_command, "drawn", counted)
     video, output = brightening(tmp_path / "a.avi", 200), tmp_path / "a.png"
 
-    done = CliRunner().invoke(app, ["draw", str(video), "-o", str(output), "--pictures", str(count)])
+    done = invoke("draw", video, "-o", output, "--pictures", count)
 
     assert done.exit_code == 0, done.output
     assert f"{count} of 200 pictures" in done.output
@@ -104,7 +103,7 @@ def test_every_frame_is_seen_but_only_those_asked_for_are_drawn(
     assert backgrounds == pytest.approx(levels, abs=3)
     assert [caption.partition(":")[0] for caption in captions] == [f"{level / 30:.2f} s" for level in levels]
     assert not any("nobody" in caption for caption in captions)
-    assert cv2.imread(str(output)).shape == (-(-count // 3) * 48, min(count, 3) * 64, 3)
+    assert cv2.imread(output).shape == (-(-count // 3) * 48, min(count, 3) * 64, 3)
 
 
 @pytest.mark.parametrize("name", ["a.xyz", "a", "file/a.png", ""])
@@ -112,18 +111,18 @@ def test_a_picture_that_cannot_be_written_is_refused_before_the_video_is_seen(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
     model = Counting()
-    monkeypatch.setattr(video_joints, "estimator_of", lambda _: nullcontext(model))
+    monkeypatch.setattr(draw_command, "estimator_of", lambda _: nullcontext(model))
     (tmp_path / "file").touch()
-    refused = CliRunner().invoke(app, ["draw", str(brightening(tmp_path / "a.avi", 3)), "-o", str(tmp_path / name)])
+    refused = invoke("draw", str(brightening(tmp_path / "a.avi", 3)), "-o", tmp_path / name)
     assert refused.exit_code == 1
     assert str(tmp_path) in refused.stderr.replace("\n", "")
     assert model.asked == 0
 
 
 def test_a_folder_that_is_missing_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(video_joints, "estimator_of", lambda _: nullcontext(Counting()))
+    monkeypatch.setattr(draw_command, "estimator_of", lambda _: nullcontext(Counting()))
     output = tmp_path / "pictures" / "a.png"
-    done = CliRunner().invoke(app, ["draw", str(brightening(tmp_path / "a.avi", 3)), "-o", str(output)])
+    done = invoke("draw", str(brightening(tmp_path / "a.avi", 3)), "-o", output)
     assert done.exit_code == 0, done.output
     assert output.is_file()
 
@@ -132,9 +131,9 @@ def test_a_folder_that_is_missing_is_made(tmp_path: Path, monkeypatch: pytest.Mo
 @pytest.mark.pose_model
 def test_a_real_clip_becomes_a_sheet(data: Path, tmp_path: Path) -> None:
     clip = data / "florence3d_rgb" / "GestureRecording_Id1actor1idAction1category1.mp4"
-    done = CliRunner().invoke(app, ["draw", str(clip), "-o", str(tmp_path / "a.png"), "--pictures", "4"])
+    done = invoke("draw", clip, "-o", tmp_path / "a.png", "--pictures", "4")
     assert done.exit_code == 0, done.output
-    drawing = cv2.imread(str(tmp_path / "a.png"))
+    drawing = cv2.imread(tmp_path / "a.png")
     assert drawing.shape == (2 * 480, 3 * 640, 3)
     first = drawing[:480, :640]
     assert (first == LEFT).all(axis=2).sum() > 300

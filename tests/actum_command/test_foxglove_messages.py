@@ -15,18 +15,16 @@ pytest.importorskip("mcap_protobuf", reason="mcap-protobuf-support is not instal
 
 from mcap_protobuf.decoder import DecoderFactory
 
-from actum.messages import Action, Event, Image, Message, Objects, Segment, Tensor, TrackedObject, Truth
+from actum.messages import Action, Event, Message, Segment, Tensor, Truth
 from actum.skeletons import INDEX
 from actum.standard_body import BONES
-from actum_command.viewers.foxglove_schemas import foxglove_schema
-from actum_command.viewers.foxglove_sinks import written
+from actum_command.viewers.foxglove_sinks import foxglove_schema, written
 from empty_messages import mark
 from people import STANDING, lacking, skeleton
 from rotation_of import rotation_of
 from scenes import action
+from shown_messages import STAMP_NS, cup, image, objects
 
-STAMP_NS = 1_700_000_000_123_456_789
-QUARTER_ABOUT_Z = [0.0, 0.0, 0.5**0.5, 0.5**0.5]
 Read = dict[str, list[Any]]
 
 
@@ -60,22 +58,6 @@ def matrix(transform: Any) -> np.ndarray:
     parent_from_child[:3, :3] = rotation_of([rotation.x, rotation.y, rotation.z, rotation.w])
     parent_from_child[:3, 3] = point(transform.translation)
     return parent_from_child
-
-
-def cup(**fields: Any) -> TrackedObject:
-    given = {"id": 3, "name": "cup", "position_m": [0.5, -0.25, 2.0], "quaternion_xyzw": QUARTER_ABOUT_Z}
-    return TrackedObject.model_validate({**given, "confidence": 1.0, "seen": True, **fields})
-
-
-def objects(stamp_ns: int, *tracked: TrackedObject) -> Objects:
-    return Objects(stamp_ns=stamp_ns, sensor="kinect0", objects=list(tracked))
-
-
-def image(picture: str, data: bytes, distortion: int = 0, **fields: Any) -> Image:
-    skeleton_from_image = [0.0, -1.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.25, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]
-    given = {"stamp_ns": STAMP_NS, "sensor": "kinect0", "format": picture, "width": 2, "height": 1, "data": data}
-    camera = {"K": [500.0, 0, 320, 0, 510.0, 240, 0, 0, 1], "distortion": [0.1] * distortion}
-    return Image.model_validate({**given, **camera, "skeleton_from_image": skeleton_from_image, **fields})
 
 
 def test_a_bone_ends_at_its_joints_and_a_joint_is_where_the_message_has_it(tmp_path: Path) -> None:

@@ -1,19 +1,20 @@
 import hashlib
 import re
+from functools import partial
 from pathlib import Path
 
 import pytest
 from matplotlib.image import imread
-from typer.testing import CliRunner, Result
 
 from actum.installing import adding
-from actum.recorder import Recorder
-from actum_command.__main__ import app
 from actum_model_inspector.folder import LIST
+from command_lines import invoke, refused, written
 from people import FRAME_NS
 from performers import HAND_PATHS, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from recognisers import tiny_model
 from som_classifier.presets import Preset
+
+inspect, refusal = partial(invoke, "inspect"), partial(refused, "inspect")
 
 
 @pytest.fixture(params=TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
@@ -30,20 +31,7 @@ def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def recorded(path: Path, actions: list[str], person: str = "2") -> Path:
     skeletons, marks = performance(actions)
-    with Recorder(path, person=person, source="test") as recorder:
-        for message in [*skeletons, *marks]:
-            recorder.write(message)
-    return path
-
-
-def inspect(*arguments: Path | str) -> Result:
-    return CliRunner().invoke(app, ["inspect", *map(str, arguments)])
-
-
-def refusal(*arguments: Path | str) -> str:
-    refused = inspect(*arguments)
-    assert refused.exit_code == 1, refused.output
-    return " ".join(refused.stderr.split())
+    return written(path, *skeletons, *marks, person=person)
 
 
 def linked(folder: Path) -> list[Path]:
@@ -148,9 +136,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
 
 def test_a_recording_without_segments_is_refused_with_the_remedy(tmp_path: Path) -> None:
     tiny_model().save(tmp_path / "m.npz")
-    with Recorder(tmp_path / "a.mcap", person="2", source="test") as recorder:
-        for message in performance(["push"])[0]:
-            recorder.write(message)
+    written(tmp_path / "a.mcap", *performance(["push"])[0], person="2")
     assert "actum segment" in refusal(tmp_path / "m.npz", tmp_path / "a.mcap", "-o", tmp_path / "out")
 
 
@@ -165,9 +151,13 @@ def test_a_recording_that_breaks_off_before_any_segment_is_named(tmp_path: Path)
 
 def test_segments_without_labels_are_shown_by_their_answers(tmp_path: Path) -> None:
     tiny_model().save(tmp_path / "m.npz")
-    with Recorder(tmp_path / "a.mcap", person="2", source="test") as recorder:
-        for message in [*performance(["push"])[0], mark("start", 0, "a"), mark("end", 19 * FRAME_NS, "a")]:
-            recorder.write(message)
+    written(
+        tmp_path / "a.mcap",
+        *performance(["push"])[0],
+        mark("start", 0, "a"),
+        mark("end", 19 * FRAME_NS, "a"),
+        person="2",
+    )
     assert inspect(tmp_path / "m.npz", tmp_path / "a.mcap", "-o", tmp_path / "out").exit_code == 0
     names = {file.stem for file in linked(tmp_path / "out")}
     assert "confusion" not in names
@@ -176,5 +166,5 @@ def test_segments_without_labels_are_shown_by_their_answers(tmp_path: Path) -> N
 
 def test_without_matplotlib_the_remedy_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tiny_model().save(tmp_path / "m.npz")
-    monkeypatch.setattr("actum_command.commands.inspect_command.find_spec", lambda name: None)
+    monkeypatch.setattr("actum_command.commands.terminal.find_spec", lambda name: None)
     assert adding("model-inspector") in refusal(tmp_path / "m.npz", "-o", tmp_path / "out")

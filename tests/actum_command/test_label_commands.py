@@ -1,20 +1,21 @@
 """The segments of a recording are listed, drawn and mended by their numbers."""
 
 import re
+from functools import partial
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from actum.messages import AUTO, MANUAL, Action, Message, Segment, Skeleton
+from actum.messages import AUTO, MANUAL, Message, Segment, Skeleton
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_command.__main__ import app
+from command_lines import invoke, printed, refused, written
 from empty_messages import action
 from people import FRAME_NS
 from performers import mark
 from repeating import Stream, five_waves, rest
 
+label, refusal = partial(printed, "label"), partial(refused, "label")
 FIRST_NS = 10**9
 """Stamp of the first frame: times count from it, not from the clock's start."""
 
@@ -34,23 +35,8 @@ def path(tmp_path: Path, waves: Stream) -> Path:
         mark("start", at[0][0], "first", "wave"),
         mark("end", at[0][1], "first"),
     ]
-    with Recorder(tmp_path / "anna.mcap", person="anna", source="test") as recorder:
-        for message in [*waves.skeletons(first_ns=FIRST_NS), *marks, action(*at[0], "first")]:
-            recorder.write(message)
+    written(tmp_path / "anna.mcap", *waves.skeletons(first_ns=FIRST_NS), *marks, action(*at[0], "first"))
     return tmp_path / "anna.mcap"
-
-
-def label(*arguments: object) -> str:
-    done = CliRunner().invoke(app, ["label", *map(str, arguments)])
-    assert done.exit_code == 0, done.output
-    return done.stdout
-
-
-def refused(*arguments: object) -> str:
-    ended = CliRunner().invoke(app, ["label", *map(str, arguments)])
-    assert ended.exit_code == 1, ended.output
-    assert ended.stderr.count("\n") == 1
-    return ended.stderr
 
 
 def rows(path: Path) -> list[str]:
@@ -77,9 +63,7 @@ def test_segments_are_numbered_in_order_of_time_with_their_answers(path: Path) -
 def test_the_answer_to_a_segment_is_that_of_its_sensor(tmp_path: Path) -> None:
     of_one = [mark("start", 1, "a"), mark("end", 2, "a")]
     of_other = [each.model_copy(update={"sensor": "kinect1"}) for each in (*of_one, action(1, 2, "a"))]
-    with Recorder(tmp_path / "both.mcap", person="anna", source="test") as recorder:
-        for message in [*of_one, *of_other]:
-            recorder.write(message)
+    written(tmp_path / "both.mcap", *of_one, *of_other)
     assert [row.count("answered push 1.00 kinect1") for row in rows(tmp_path / "both.mcap")] == [0, 1]
 
 
@@ -94,11 +78,8 @@ def test_bounds_are_moved_to_a_time_or_by_a_difference(path: Path) -> None:
 
 def test_a_segment_that_a_classifier_found_is_the_users_once_it_is_moved(tmp_path: Path, waves: Stream) -> None:
     path = tmp_path / "found.mcap"
-    with Recorder(path, person="anna", source="test") as recorder:
-        for frame in waves.skeletons():
-            recorder.write(frame)
-        for kind, stamp_ns in (("start", 10**9), ("end", 2 * 10**9)):
-            recorder.write(mark(kind, stamp_ns, "auto-1").model_copy(update={"origin": AUTO}))
+    found = [mark(kind, stamp_ns, "auto-1") for kind, stamp_ns in (("start", 10**9), ("end", 2 * 10**9))]
+    written(path, *waves.skeletons(), *(each.model_copy(update={"origin": AUTO}) for each in found))
     label("move", path, 1, "--start", "+0.1")
     assert [(each.origin, each.stamp_ns) for each in marks_of(path, "auto-1")] == [
         (MANUAL, 1_100_000_000),
@@ -132,9 +113,7 @@ def test_a_segment_without_a_label_is_deleted_without_its_frames(path: Path) -> 
 
 def test_repetitions_are_cut_and_cut_anew(tmp_path: Path, waves: Stream) -> None:
     path = tmp_path / "unmarked.mcap"
-    with Recorder(path, person="anna", source="test") as recorder:
-        for frame in waves.skeletons(first_ns=FIRST_NS):
-            recorder.write(frame)
+    written(path, *waves.skeletons(first_ns=FIRST_NS))
     frames = unmarked(path)
     assert "5 segments labelled 'wave'" in label("cut", path, 5, "wave")
     starts = [float(row.split()[1]) for row in rows(path)]
@@ -165,12 +144,10 @@ def test_an_empty_label_is_none(path: Path, waves: Stream, tmp_path: Path) -> No
 
 def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) -> None:
     path = tmp_path / "bare.mcap"
-    with Recorder(path, person="", source="test") as recorder:
-        for frame in Stream().then(rest(2)).skeletons():
-            recorder.write(frame)
+    written(path, *Stream().then(rest(2)).skeletons(), person="")
     assert label(path).endswith("0 segments, 0 usable\n")
     assert "0 segments drawn" in label("picture", path, "-o", tmp_path / "bare.png")
-    assert "shows no person who moves" in refused("cut", path, 5, "wave")
+    assert "shows no person who moves" in refusal("cut", path, 5, "wave")
     label("add", path, 0.5, 1.5, "stand")
     assert rows(path) == ["1 0.50 s 1.50 s (1.00 s) added-1 stand manual nearest usable"]
 
@@ -200,32 +177,32 @@ def test_what_cannot_be_done_is_refused_and_changes_nothing(
 ) -> None:
     before = path.read_bytes()
     command, *others = arguments
-    assert re.search(reason, refused(command, path, *others))
+    assert re.search(reason, refusal(command, path, *others))
     assert path.read_bytes() == before
 
 
 def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_text("nothing")
-    assert "the file is not an MCAP file" in refused(tmp_path / "a.mcap")
+    assert "the file is not an MCAP file" in refusal(tmp_path / "a.mcap")
 
 
 def test_a_picture_of_another_kind_is_refused(path: Path, tmp_path: Path) -> None:
-    assert "does not end in .png or .svg" in refused("picture", path, "-o", tmp_path / "a.gif")
-    assert "does not exist" in refused("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
+    assert "does not end in .png or .svg" in refusal("picture", path, "-o", tmp_path / "a.gif")
+    assert "does not exist" in refusal("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
 
 
 def test_segments_of_several_sensors_are_listed_and_changed_one_by_one(path: Path, waves: Stream) -> None:
     """Also where they share their name and their time, for two sensors may see one action."""
     first, last = (FIRST_NS + frame * FRAME_NS for frame in waves.truths[0])
     both = path.with_name("both.mcap")
-    with Recorder(both, person="anna", source="test") as recorder:
-        for message in waves.skeletons(first_ns=FIRST_NS):
-            recorder.write(message)
-        for sensor, answered in (("kinect0", "push"), ("kinect1", "pull")):
-            own = [mark("start", first, "one", "wave"), mark("end", last, "one"), action(first, last, "one")]
-            for message in own:
-                update = {"sensor": sensor} | ({"action": answered} if isinstance(message, Action) else {})
-                recorder.write(message.model_copy(update=update))
+    marked = [mark("start", first, "one", "wave"), mark("end", last, "one")]
+    answers = [action(first, last, "one").model_copy(update={"action": name}) for name in ("push", "pull")]
+    of_two = [
+        message.model_copy(update={"sensor": sensor})
+        for sensor, answer in zip(("kinect0", "kinect1"), answers, strict=True)
+        for message in (*marked, answer)
+    ]
+    written(both, *waves.skeletons(first_ns=FIRST_NS), *of_two)
     kinect0, kinect1 = rows(both)
     assert kinect0.endswith("answered push 1.00 kinect0") and kinect1.endswith("answered pull 1.00 kinect1")
     label("move", both, 2, "--end", "+0.1")
@@ -244,6 +221,6 @@ def test_a_time_beyond_any_clock_is_refused(path: Path, seconds: str) -> None:
         ["label", "move", str(path), "1", f"--start={seconds}"],
         ["label", "move", str(path), "first", f"--end={seconds}"],
     ):
-        ended = CliRunner().invoke(app, command)
+        ended = invoke(*command)
         assert (ended.exit_code, ended.stderr.count("\n")) == (1, 1), command
     assert path.read_bytes() == before

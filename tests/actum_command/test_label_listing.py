@@ -1,19 +1,21 @@
 """Segments are listed as training would get them, and named by number or id."""
 
+from functools import partial
+from itertools import chain
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from actum.messages import AUTO, MANUAL, Message, Segment
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_command.__main__ import app
 from actum_model_trainer.samples import samples_from
+from command_lines import printed, refused, written
 from empty_messages import action
 from people import FRAME_NS, reaches
 from performers import mark
 
+label, refusal = partial(printed, "label"), partial(refused, "label")
 FRAMES = 60
 
 
@@ -30,23 +32,8 @@ def path(tmp_path: Path) -> Path:
         mark("start", 52 * FRAME_NS, "open", "lift"),
     ]
     answered = action(0, 29 * FRAME_NS, "whole")
-    with Recorder(tmp_path / "anna.mcap", person="anna", source="test") as recorder:
-        for message in [*reaches(FRAMES), *marks, answered]:
-            recorder.write(message)
+    written(tmp_path / "anna.mcap", *reaches(FRAMES), *marks, answered)
     return tmp_path / "anna.mcap"
-
-
-def label(*arguments: object) -> str:
-    done = CliRunner().invoke(app, ["label", *map(str, arguments)])
-    assert done.exit_code == 0, done.output
-    return done.stdout
-
-
-def refused(*arguments: object) -> str:
-    ended = CliRunner().invoke(app, ["label", *map(str, arguments)])
-    assert ended.exit_code == 1, ended.output
-    assert ended.stderr.count("\n") == 1
-    return ended.stderr
 
 
 def rows(path: Path) -> list[str]:
@@ -98,9 +85,7 @@ def test_what_a_classifier_has_found_is_listed_and_becomes_the_users_once_mended
         for kind, frame in (("start", first), ("end", first + 20))
     ]
     path = tmp_path / "found.mcap"
-    with Recorder(path, person="anna", source="test") as recorder:
-        for message in [*reaches(FRAMES), *found]:
-            recorder.write(message)
+    written(path, *reaches(FRAMES), *found)
     assert "not usable: no label" in label(path)
     label("relabel", path, "auto-1", "wave")
     label("move", path, "auto-2", "--start", "+0.1")
@@ -130,7 +115,7 @@ def test_actions_of_several_sensors_are_listed_with_their_sensor(two_sensors: Pa
 
 
 def test_an_action_that_several_sensors_name_alike_is_changed_at_one_of_them_alone(two_sensors: Path) -> None:
-    said = refused("delete", two_sensors, "one")
+    said = refusal("delete", two_sensors, "one")
     assert "2 segments have the id 'one': give the number of one of them, 1 or 2" in said
     label("relabel", two_sensors, 2, "pull")
     label("move", two_sensors, 2, "--end", "-0.1")
@@ -143,15 +128,10 @@ def test_an_action_that_several_sensors_name_alike_is_changed_at_one_of_them_alo
 
 def test_a_name_that_is_used_again_after_a_restart_is_several_segments(tmp_path: Path) -> None:
     path = tmp_path / "again.mcap"
-    uses = [(0, 14), (20, 34), (40, 54)]
-    with Recorder(path, person="anna", source="test") as recorder:
-        for message in reaches(FRAMES):
-            recorder.write(message)
-        for first, last in uses:
-            at = first * FRAME_NS, last * FRAME_NS
-            for message in (mark("start", at[0], "one", "push"), mark("end", at[1], "one"), action(*at, "one")):
-                recorder.write(message)
-    assert "3 segments have the id 'one'" in refused("delete", path, "one")
+    uses = [(first * FRAME_NS, (first + 14) * FRAME_NS) for first in (0, 20, 40)]
+    segments = [(mark("start", a, "one", "push"), mark("end", b, "one"), action(a, b, "one")) for a, b in uses]
+    written(path, *reaches(FRAMES), *chain(*segments))
+    assert "3 segments have the id 'one'" in refusal("delete", path, "one")
     label("delete", path, 2)
     assert marks_of(path, "one") == [("start", 0, "push"), ("end", 14, None), ("start", 40, "push"), ("end", 54, None)]
     assert len(of_segment(path, "one")) == 6

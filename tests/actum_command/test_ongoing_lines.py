@@ -3,8 +3,7 @@
 from rich.console import Console
 
 from actum.messages import Action
-from actum_command.describing import describe
-from actum_command.ongoing_lines import STALE_S, OngoingLines
+from actum_command.describing import STALE_S, OngoingLines, describe
 from empty_messages import action, skeleton
 
 

@@ -23,9 +23,8 @@ from actum.runtime import Received
 from actum.skeletons import INDEX
 from actum_command.commands import terminal
 from actum_command.commands.doctor_command import table
-from actum_command.describing import describe
+from actum_command.describing import describe, json_line, line
 from actum_command.doctor.service_checks import Finding
-from actum_command.message_lines import json_line, line
 from empty_messages import action, image, mark, skeleton, status
 from people import reaches
 from pose_preprocessor.node import PosePreprocessor

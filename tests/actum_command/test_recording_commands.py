@@ -8,9 +8,7 @@ from pathlib import Path
 
 import msgpack
 import pytest
-from click.testing import Result
 from mcap.writer import Writer
-from typer.testing import CliRunner
 
 from actum import codec, keys
 from actum.messages import CUT, MANUAL, SIMULATOR, Message, Segment
@@ -18,10 +16,10 @@ from actum.recorder import Recorder, StoredRecorder
 from actum.recording import Recording
 from actum.runtime import Received
 from actum_command import streaming
-from actum_command.__main__ import app
 from actum_command.commands import recording_commands
 from actum_examples.cutting import counting
 from actum_model_trainer.samples import select
+from command_lines import invoke, refused, written
 from empty_messages import image, mark, skeleton, status
 from people import FRAME_NS
 from repeating import Stream, five_waves, rest
@@ -79,21 +77,9 @@ def live(monkeypatch: pytest.MonkeyPatch) -> Live:
     return client
 
 
-def actum(*arguments: object) -> Result:
-    return CliRunner().invoke(app, [str(argument) for argument in arguments])
-
-
-def refused(*arguments: object) -> str:
-    ended = actum(*arguments)
-    assert ended.exit_code == 1, ended.output
-    assert isinstance(ended.exception, SystemExit)
-    assert ended.stderr.count("\n") == 1
-    return ended.stderr
-
-
 def test_only_what_is_stored_is_counted(live: Live, tmp_path: Path) -> None:
     live.comes(status(), skeleton(1), image(1), skeleton(2), mark("start", 2))
-    recorded = actum("record", tmp_path / "a.mcap")
+    recorded = invoke("record", tmp_path / "a.mcap")
     assert f"3 messages, 1 marked actions, written to {tmp_path / 'a.mcap'}" in recorded.stdout
     assert len(list(Recording(tmp_path / "a.mcap").messages())) == 3
     assert "not stored" not in recorded.stdout
@@ -104,12 +90,12 @@ def test_whose_actions_are_stored_and_whose_are_not_is_told(live: Live, tmp_path
     scene = [mark("start", 2, "s1", origin=SIMULATOR), mark("end", 3, "s1", origin=SIMULATOR)]
     own = [mark("start", 4, "mine", origin=MANUAL), mark("end", 5, "mine", origin=MANUAL), mark("start", 6, "robot")]
     live.comes(skeleton(1), *scene, *own)
-    told = actum("record", tmp_path / "a.mcap", "--label", "push").stdout
+    told = invoke("record", tmp_path / "a.mcap", "--label", "push").stdout
     assert "2 marked by manual, labelled 'push'" in told
     assert "1 marked by simulator left out: --marks simulator or --marks all takes such" in told
     assert "without an end, so nothing is learnt from them: robot" in told
     live.comes(skeleton(1), *scene, *own)
-    told = actum("record", tmp_path / "b.mcap", "--marks", "manual, simulator").stdout
+    told = invoke("record", tmp_path / "b.mcap", "--marks", "manual, simulator").stdout
     assert "3 marked actions" in told
     assert "1 marked by simulator, without a label" in told
     assert "left out" not in told
@@ -118,7 +104,7 @@ def test_whose_actions_are_stored_and_whose_are_not_is_told(live: Live, tmp_path
 def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: Path) -> None:
     stream = five_waves().then(rest(6))
     live.comes(*stream.skeletons(), mark("start", 2, "mine", origin=MANUAL))
-    told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5, "--person", "anna").stdout
+    told = invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5, "--person", "anna").stdout
     assert "do 'wave' 5 times" in told
     assert "5 of 5" in told
     assert "that was the last: stopping" in told
@@ -136,31 +122,27 @@ def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: 
 
 def test_what_is_repeated_with_nobody_there_is_told(live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1))
-    assert "nobody was in view" in actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
+    assert "nobody was in view" in invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout
 
 
 def test_standing_still_is_no_example(live: Live, tmp_path: Path) -> None:
     live.comes(*Stream().then(rest(12)).skeletons(noise_m=0.008))
-    told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 3, "--seconds", 3).stdout
+    told = invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 3, "--seconds", 3).stdout
     assert "this does not count, nothing was cut: the movement was no larger than the noise" in told
     assert "marked by cut" not in told
 
 
 def test_a_recording_that_lacks_repetitions_is_left_out_of_training(live: Live, tmp_path: Path) -> None:
     live.comes(*five_waves().skeletons())
-    told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 12, "--seconds", 3).stdout
+    told = invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 12, "--seconds", 3).stdout
     assert "of 12 repetitions found: record " in told
     assert "left out of training" in told
     assert Recording(tmp_path / "a.mcap").metadata["excluded"] == "true"
 
 
-def test_times_need_a_label(live: Live, tmp_path: Path) -> None:
-    assert "add --label" in refused("record", tmp_path / "a.mcap", "--times", 5)
-
-
 def test_marks_by_hand_are_stored_beside_the_cuts_where_they_are_asked_for(live: Live, tmp_path: Path) -> None:
     live.comes(*five_waves().skeletons(), mark("start", 2, "mine", origin=MANUAL), mark("end", 3, "mine"))
-    told = actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5, "--marks", "manual").stdout
+    told = invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5, "--marks", "manual").stdout
     assert "1 marked by manual" in told
     assert "5 marked by cut" in told
 
@@ -169,7 +151,7 @@ def test_a_kill_before_the_end_leaves_no_recording_of_that_name(live: Live, tmp_
     live.comes(*five_waves().skeletons())
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(counting, "cut", lambda *_: sys.exit("killed"))
-        actum("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5)
+        invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5)
     assert [path.name for path in tmp_path.iterdir()] == ["a.mcap.part"]
     assert list(Recording(tmp_path / "a.mcap.part").messages())
 
@@ -186,9 +168,10 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
     assert f"actum record {path} --finish" in told
     assert (tmp_path / "a.mcap.part").read_bytes() == left
     assert live.take() is not None, "nobody has listened"
-    assert f"1 messages, up to where it breaks off, written to {path}" in actum("record", path, "--finish").stdout
+    assert f"1 messages, up to where it breaks off, written to {path}" in invoke("record", path, "--finish").stdout
     assert [message.stamp_ns for message in Recording(path).messages()] == [1]
-    assert "already exists" in refused("record", path)
+    assert f"{path} already exists" in refused("record", path)
+    assert "add --label" in refused("record", tmp_path / "b.mcap", "--times", 5)
     assert "there is no unfinished recording" in refused("record", path, "--finish")
 
 
@@ -205,7 +188,7 @@ def test_what_cannot_be_finished_is_told_and_left(tmp_path: Path) -> None:
 @pytest.mark.parametrize("named", ["a.mcap", "a.mcap.part"])
 def test_what_is_finished_may_be_named_as_it_lies_there(tmp_path: Path, named: str) -> None:
     written(tmp_path / "a.mcap", skeleton(1)).rename(tmp_path / "a.mcap.part")
-    assert "1 messages" in actum("record", tmp_path / named, "--finish").stdout
+    assert "1 messages" in invoke("record", tmp_path / named, "--finish").stdout
     assert [path.name for path in tmp_path.iterdir()] == ["a.mcap"]
 
 
@@ -233,13 +216,13 @@ def test_no_command_writes_over_a_recording_or_what_is_left_of_one(tmp_path: Pat
 def test_what_came_before_the_stop_is_stored(live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1), skeleton(2), mark("end", 2))
     live.stop_at_once()
-    assert "3 messages" in actum("record", tmp_path / "a.mcap").stdout
+    assert "3 messages" in invoke("record", tmp_path / "a.mcap").stdout
 
 
 def test_marks_and_payloads_that_are_lost_are_told(live: Live, tmp_path: Path) -> None:
     live.comes(mark("start"), mark("end"))
     live.comes_garbage()
-    recorded = actum("record", tmp_path / "a.mcap")
+    recorded = invoke("record", tmp_path / "a.mcap")
     assert "0 messages" in recorded.stdout
     assert "not stored: mark_without_stamp 2" in recorded.stdout
     assert "not decodable: 1 (not_msgpack 1)" in recorded.stdout
@@ -247,27 +230,17 @@ def test_marks_and_payloads_that_are_lost_are_told(live: Live, tmp_path: Path) -
 
 def test_a_recording_of_nothing_is_warned_of(live: Live, tmp_path: Path) -> None:
     live.comes(status())
-    assert "nothing was stored" in actum("record", tmp_path / "a.mcap").stdout
+    assert "nothing was stored" in invoke("record", tmp_path / "a.mcap").stdout
 
 
-def test_a_folder_is_not_recorded_to(live: Live, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("named", "told"), [("takes", "takes is a folder"), ("file/a.mcap", "cannot be written")])
+def test_where_nothing_can_be_written_nothing_is_recorded(named: str, told: str, live: Live, tmp_path: Path) -> None:
     (tmp_path / "takes").mkdir()
-    assert "takes is a folder" in refused("record", tmp_path / "takes")
-    assert [path.name for path in tmp_path.iterdir()] == ["takes"]
-
-
-def test_where_nothing_can_be_written_nothing_is_recorded(live: Live, tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     live.comes(skeleton(1))
-    assert "cannot be written" in refused("record", tmp_path / "file" / "a.mcap")
+    assert told in refused("record", tmp_path / named)
     assert live.take() is not None, "nobody has listened"
-
-
-def written(path: Path, *messages: Message, person: str = "anna") -> Path:
-    with Recorder(path, person=person, source="test") as recorder:
-        for message in messages:
-            recorder.write(message)
-    return path
+    assert {path.name for path in tmp_path.iterdir()} == {"takes", "file"}
 
 
 def cut(path: Path) -> Path:
@@ -277,25 +250,17 @@ def cut(path: Path) -> Path:
     return path
 
 
-def test_a_recording_is_never_written_over(live: Live, tmp_path: Path) -> None:
-    path = written(tmp_path / "a.mcap", skeleton(1))
-    before = path.read_bytes()
-    live.comes(skeleton(2))
-    assert f"{path} already exists" in refused("record", path)
-    assert path.read_bytes() == before
-
-
 @pytest.mark.parametrize(("marks", "told"), [([], True), ([mark("start", 2), mark("end", 3)], False)])
 def test_a_label_that_nothing_got_is_told(marks: list[Message], told: bool, live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1), *marks)
-    recorded = actum("record", tmp_path / "a.mcap", "--label", "push")
+    recorded = invoke("record", tmp_path / "a.mcap", "--label", "push")
     assert ("nothing of it is labelled 'push'" in recorded.stdout) == told
 
 
 def test_blanks_between_persons_are_none_of_their_names(live: Live, tmp_path: Path) -> None:
     for person in ("anna", "bert", "cem"):
         written(tmp_path / f"{person}.mcap", skeleton(1), person=person)
-    assert "played 2 recordings" in actum("play", tmp_path, "--person", "anna, cem", "--speed", 100).stdout
+    assert "played 2 recordings" in invoke("play", tmp_path, "--person", "anna, cem", "--speed", 100).stdout
 
 
 def test_a_damaged_recording_ends_a_play_with_one_line(live: Live, tmp_path: Path) -> None:
@@ -308,7 +273,7 @@ def test_a_damaged_recording_ends_a_play_with_one_line(live: Live, tmp_path: Pat
 
 def test_a_recording_that_breaks_off_is_named(live: Live, tmp_path: Path) -> None:
     path = cut(written(tmp_path / "a.mcap", skeleton(1), skeleton(2)))
-    played = actum("play", path)
+    played = invoke("play", path)
     assert played.exit_code == 0
     assert f"{path} is truncated" in played.stdout
 
@@ -321,7 +286,7 @@ def test_what_a_play_passes_over_is_counted(live: Live, tmp_path: Path) -> None:
         for key, payload in (("robot/odometry", b"\x80"), ("actum/kinect0/skeleton", msgpack.packb([1]))):
             writer.add_message(writer.register_channel(key, "msgpack", 0), log_time=9, data=payload, publish_time=5)
         writer.finish()
-    assert f"{path}: skipped not_a_map 1, unknown_key 1" in actum("play", path).stdout
+    assert f"{path}: skipped not_a_map 1, unknown_key 1" in invoke("play", path).stdout
 
 
 class TestUnfinishedInAFolder:
@@ -347,18 +312,18 @@ class TestUnfinishedInAFolder:
         assert f"{folder / 'a.mcap.part'} is not read, because the finished recording {folder / 'a.mcap'}" in text
 
     def test_commands_read_them_and_say_so(self, folder: Path) -> None:
-        listed = actum("label", folder).stdout
+        listed = invoke("label", folder).stdout
         assert "done" in listed and "newest" in listed and "hidden" not in listed
         self.told_of(listed, folder)
 
     def test_watch_reads_them_and_says_so_beside_its_lines(self, folder: Path) -> None:
-        watched = actum("watch", "segment", "--json", "--from", folder)
+        watched = invoke("watch", "segment", "--json", "--from", folder)
         assert [json.loads(line)["segment_id"] for line in watched.stdout.splitlines()] == ["done"] * 2 + ["newest"] * 2
         self.told_of(watched.stderr, folder)
         assert f"{folder / 'b.mcap.part'} is truncated" in watched.stderr
 
     def test_a_file_that_is_named_is_read_or_refused(self, folder: Path) -> None:
-        assert "newest" in actum("watch", "segment", "--from", folder / "b.mcap.part").stdout
+        assert "newest" in invoke("watch", "segment", "--from", folder / "b.mcap.part").stdout
         assert "the file is not an MCAP file" in refused("watch", "segment", "--from", folder / "c.mcap.part")
 
     def test_what_takes_folders_by_itself_logs_it(self, folder: Path, caplog: pytest.LogCaptureFixture) -> None:

@@ -10,7 +10,7 @@ pytest.importorskip("rerun", reason="rerun-sdk is not installed: pip install -e 
 
 from rerun.chunk import RrdReader
 
-from actum.messages import Agent, Image, Message, Objects, Skeleton, TrackedObject
+from actum.messages import Agent, Message, Skeleton
 from actum.skeletons import INDEX
 from actum.standard_body import BONES
 from actum_command.viewers.rerun_entries import RerunEntries
@@ -18,9 +18,8 @@ from actum_command.viewers.rerun_program import saved
 from empty_messages import mark
 from people import STANDING, lacking, listed, skeleton
 from scenes import action, rejected_action
+from shown_messages import QUARTER_ABOUT_Z, STAMP_NS, cup, image, objects
 
-STAMP_NS = 1_700_000_000_123_456_789
-QUARTER_ABOUT_Z = [0.0, 0.0, 0.5**0.5, 0.5**0.5]
 Row = dict[str, Any]
 
 
@@ -39,26 +38,6 @@ def shown(folder: Path, *messages: Message) -> dict[str, list[Row]]:
             for stamp, row in zip(stamps, batch.select(timeless).to_pylist(), strict=True):
                 rows.setdefault(chunk.entity_path, []).append({**row, "capture": stamp})
     return {path: sorted(each, key=lambda row: row["capture"]) for path, each in rows.items()}
-
-
-def objects(stamp_ns: int, *tracked: TrackedObject) -> Objects:
-    return Objects(stamp_ns=stamp_ns, sensor="kinect0", objects=list(tracked))
-
-
-def cup(**fields: Any) -> TrackedObject:
-    given = {"id": 3, "name": "cup", "position_m": [0.5, -0.25, 2.0], "quaternion_xyzw": QUARTER_ABOUT_Z}
-    return TrackedObject.model_validate({**given, "confidence": 1.0, "seen": True, **fields})
-
-
-def image(picture: str, data: bytes, **fields: Any) -> Image:
-    skeleton_from_image = [0.0, -1.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.25, 0.0, 0.0, 1.0, 2.0, 0.0, 0.0, 0.0, 1.0]
-    given = {"stamp_ns": STAMP_NS, "sensor": "kinect0", "format": picture, "width": 2, "height": 1, "data": data}
-    camera = {
-        "K": [500.0, 0, 320, 0, 510.0, 240, 0, 0, 1],
-        "distortion": [],
-        "skeleton_from_image": skeleton_from_image,
-    }
-    return Image.model_validate({**given, **camera, **fields})
 
 
 def test_a_bone_ends_at_its_joints_and_a_joint_is_where_the_message_has_it(tmp_path: Path) -> None:

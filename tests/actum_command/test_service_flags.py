@@ -1,7 +1,5 @@
 """What the services can be told can be told to `actum up`, which starts them."""
 
-from pathlib import Path
-
 import pytest
 from typer.testing import CliRunner
 
@@ -9,44 +7,22 @@ from actum.command_line import from_command_line, placeholder
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.__main__ import app
-from actum_command.commands import system_commands
 from actum_command.service_settings import DECLARED, SET_BY_UP
 from actum_command.supervising import Program
-
-BY_NAME = dict[str, list[str]]
-
-
-@pytest.fixture
-def started(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> BY_NAME:
-    """The arguments of the programs that would run, by name, where none does."""
-    arguments: BY_NAME = {}
-
-    def supervise(_: object, programs: list[Program], *_others: object) -> None:
-        arguments.update({program.name: list(program.arguments) for program in programs})
-
-    monkeypatch.setenv("ACTUM_TRAINER_DATA", str(tmp_path))
-    monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(system_commands, "stop_on_signals", lambda: None)
-    monkeypatch.setattr(system_commands, "wait_for_router", lambda *_: None)
-    monkeypatch.setattr(system_commands, "supervise", supervise)
-    monkeypatch.setattr(system_commands.Supervisor, "start", lambda *_: None)
-    return arguments
+from command_lines import invoke, printed
 
 
 def up(*arguments: str) -> None:
-    done = CliRunner().invoke(app, ["up", *arguments])
-    assert done.exit_code == 0, done.output
+    printed("up", *arguments)
 
 
-def refusal(*arguments: str) -> str:
-    refused = CliRunner().invoke(app, ["up", *arguments])
-    assert refused.exit_code in (1, 2), refused.output
-    return " ".join(refused.stderr.split())
+def arguments_of(started: list[Program]) -> dict[str, list[str]]:
+    return {program.name: list(program.arguments) for program in started}
 
 
-def test_each_service_is_told_its_own_settings(started: BY_NAME) -> None:
+def test_each_service_is_told_its_own_settings(started: list[Program]) -> None:
     up("--camera", "1", "--no-images", "--scene", "a.yaml", "--pointing-labels", "point", "--pointing-labels", "at")
-    assert started == {
+    assert arguments_of(started) == {
         "sensor_gateway": ["--source", "camera", "--camera=1", "--no-images"],
         "pose_preprocessor": [],
         "som_classifier": [],
@@ -57,14 +33,14 @@ def test_each_service_is_told_its_own_settings(started: BY_NAME) -> None:
     }
 
 
-def test_a_service_understands_what_it_is_told(started: BY_NAME, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_service_understands_what_it_is_told(started: list[Program], monkeypatch: pytest.MonkeyPatch) -> None:
     up("--up-in-camera", "[0, -1, 0.2]", "--person-height-m", "1.8", "--mirrored", "--camera", "0")
-    monkeypatch.setattr("sys.argv", ["sensor_gateway", *started["sensor_gateway"]])
+    monkeypatch.setattr("sys.argv", ["sensor_gateway", *arguments_of(started)["sensor_gateway"]])
     told = from_command_line(DECLARED["sensor_gateway"], "sensor_gateway").model_dump()
     wanted = {"up_in_camera": [0, -1, 0.2], "person_height_m": 1.8, "mirrored": True, "camera": "0", "source": "camera"}
     assert {name: told[name] for name in wanted} == wanted
     up("--pointing-labels", "point", "--pointing-labels", "show", "--expected-outcomes", '{"toss": "lifted"}')
-    monkeypatch.setattr("sys.argv", ["action_fusion", *started["action_fusion"]])
+    monkeypatch.setattr("sys.argv", ["action_fusion", *arguments_of(started)["action_fusion"]])
     told = from_command_line(DECLARED["action_fusion"], "action_fusion").model_dump()
     assert told["pointing_labels"] == {"point", "show"}
     assert told["expected_outcomes"] == {"toss": "lifted"}
@@ -102,28 +78,30 @@ def test_a_flags_placeholder_shows_the_form_of_its_value(service: str, setting: 
         (("--source", "simulator", "--camera", "1"), "--source simulator uses no camera"),
     ],
 )
-def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: str, started: BY_NAME) -> None:
-    assert reason in refusal(*arguments)
-    assert started == {}
+def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: str, started: list[Program]) -> None:
+    ended = invoke("up", *arguments)
+    assert ended.exit_code in (1, 2), ended.output
+    assert reason in " ".join(ended.stderr.split())
+    assert started == []
 
 
-def test_without_any_the_simulated_scene_is_started(started: BY_NAME) -> None:
+def test_without_any_the_simulated_scene_is_started(started: list[Program]) -> None:
     up()
-    assert set(started) == {"scene_simulator", *processes.SERVICES, "model_trainer", processes.PAGE}
-    assert started["scene_simulator"] == []
+    assert set(arguments_of(started)) == {"scene_simulator", *processes.SERVICES, "model_trainer", processes.PAGE}
+    assert arguments_of(started)["scene_simulator"] == []
 
 
-def test_the_simulated_scene_is_told_its_settings(started: BY_NAME) -> None:
+def test_the_simulated_scene_is_told_its_settings(started: list[Program]) -> None:
     up("--actor", "3", "--seed", "2", "--repetitions", "1", "--image-hz", "0")
-    assert started["scene_simulator"] == ["--actor=3", "--seed=2", "--repetitions=1", "--image-hz=0"]
+    assert arguments_of(started)["scene_simulator"] == ["--actor=3", "--seed=2", "--repetitions=1", "--image-hz=0"]
 
 
-def test_the_page_is_told_its_settings_and_can_be_left_out(started: BY_NAME) -> None:
+def test_the_page_is_told_its_settings_and_can_be_left_out(started: list[Program]) -> None:
     up("--page-port", "9000", "--page-names", "lab.example")
-    assert started["web_dashboard"] == ["--page-port=9000", "--page-names=lab.example"]
+    assert arguments_of(started)["web_dashboard"] == ["--page-port=9000", "--page-names=lab.example"]
     started.clear()
     up("--no-page")
-    assert processes.PAGE not in started
+    assert processes.PAGE not in arguments_of(started)
 
 
 def test_every_setting_of_every_service_stands_in_the_help() -> None:

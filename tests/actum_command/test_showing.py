@@ -7,9 +7,8 @@ from actum.codec import DecodeError
 from actum.messages import Message
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_command.viewers.in_words import log_line
-from actum_command.viewers.presence import Presence
-from actum_command.viewers.showing import RecordedStreams, Showing
+from actum_command.commands.viewed_streams import RecordedStreams, Showing
+from actum_command.viewers.contents import Presence, log_line
 from empty_messages import mark
 from people import STANDING, skeleton
 from scenes import action

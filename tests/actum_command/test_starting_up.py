@@ -7,26 +7,11 @@ from typer.testing import CliRunner
 
 from actum_command import processes
 from actum_command.__main__ import app
-from actum_command.commands import system_commands
 from actum_command.model_in_use import REMINDER_S, ModelInUse, Reminder, model_in_use
 from actum_command.simulated_model import SIMULATED_MODEL
+from actum_command.supervising import Program
 from recognisers import tiny_model
 from som_classifier.model_loading import load_model
-
-
-@pytest.fixture
-def supervised(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
-    """The programs that would run beside the router, by name, where none does."""
-    names: list[str] = []
-    monkeypatch.setenv("ACTUM_TRAINER_DATA", str(tmp_path / "teaching"))
-    monkeypatch.setattr(system_commands, "refuse_taken", lambda _: None)
-    monkeypatch.setattr(system_commands, "stop_on_signals", lambda: None)
-    monkeypatch.setattr(system_commands, "wait_for_router", lambda *_: None)
-    monkeypatch.setattr(
-        system_commands, "supervise", lambda _, programs, *others: names.extend(p.name for p in programs)
-    )
-    monkeypatch.setattr(system_commands.Supervisor, "start", lambda *_: None)
-    return names
 
 
 def printed_by(*arguments: str, code: int = 0) -> str:
@@ -49,14 +34,14 @@ def printed_by(*arguments: str, code: int = 0) -> str:
     ],
 )
 def test_what_runs_beside_the_services_and_how_actions_are_found(
-    arguments: list[str], beside: list[str], told: str, supervised: list[str]
+    arguments: list[str], beside: list[str], told: str, started: list[Program]
 ) -> None:
     assert told in printed_by(*arguments)
-    assert supervised == [*processes.SERVICES, "model_trainer", *beside, processes.PAGE]
+    assert [program.name for program in started] == [*processes.SERVICES, "model_trainer", *beside, processes.PAGE]
 
 
 def test_the_advice_about_marks_follows_the_environment_too(
-    supervised: list[str], monkeypatch: pytest.MonkeyPatch
+    started: list[Program], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("ACTUM_SEGMENTS", "auto")
     assert "marks are refused" in printed_by()
@@ -70,27 +55,27 @@ def test_the_advice_about_marks_follows_the_environment_too(
     ],
 )
 def test_marks_of_the_scene_that_nobody_could_use_are_refused(
-    arguments: list[str], reason: str, supervised: list[str]
+    arguments: list[str], reason: str, started: list[Program]
 ) -> None:
     assert reason in printed_by(*arguments, code=1)
-    assert supervised == []
+    assert started == []
 
 
-@pytest.mark.usefixtures("supervised")
+@pytest.mark.usefixtures("started")
 def test_the_simulated_scene_starts_with_the_model_that_ships_until_another_was_put_into_use(tmp_path: Path) -> None:
     assert "model: the one for the simulated scene that ships with actum" in printed_by()
     tiny_model().save(tmp_path / "teaching" / "model.npz")
     assert "model: the one that was put into use last" in printed_by()
 
 
-@pytest.mark.usefixtures("supervised")
+@pytest.mark.usefixtures("started")
 def test_a_camera_does_not_start_with_the_model_of_the_simulated_scene() -> None:
     printed = printed_by("--source", "camera")
     assert "no model yet, so every action is answered with 'no model'. Teach one on the page; or record" in printed
     assert "simulat" not in printed
 
 
-@pytest.mark.usefixtures("supervised")
+@pytest.mark.usefixtures("started")
 def test_a_model_that_is_missing_or_cannot_be_used_is_named_with_what_may_be_meant(tmp_path: Path) -> None:
     (tmp_path / "foreign.npz").write_text("nothing of the kind")
     tiny_model().save(tmp_path / "model.npz")
@@ -134,7 +119,7 @@ def test_the_model_that_ships_is_never_what_a_camera_starts_with(tmp_path: Path)
         assert load_model(model.file).id == load_model(SIMULATED_MODEL).id
 
 
-def test_a_folder_that_cannot_be_used_is_named(tmp_path: Path, supervised: list[str]) -> None:
+def test_a_folder_that_cannot_be_used_is_named(tmp_path: Path, started: list[Program]) -> None:
     (tmp_path / "teaching").write_text("a file")
     assert "teaching cannot be used" in printed_by(code=1)
-    assert supervised == []
+    assert started == []

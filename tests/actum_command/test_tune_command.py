@@ -6,10 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
 from actum.recording import Recording
-from actum_command.__main__ import app
+from command_lines import printed, refused
 from days import days, searching_model
 
 
@@ -33,16 +32,8 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Desk:
     return Desk(folder / "m.npz", recordings)
 
 
-def run(command: str, *arguments: object) -> str:
-    done = CliRunner().invoke(app, [command, *map(str, arguments)])
-    assert done.exit_code == 0, done.output
-    return " ".join(done.stdout.split())
-
-
-def refused(command: str, *arguments: object) -> str:
-    ended = CliRunner().invoke(app, [command, *map(str, arguments)])
-    assert ended.exit_code == 1, ended.output
-    return " ".join(ended.stderr.split())
+def run(*arguments: object) -> str:
+    return " ".join(printed(*arguments).split())
 
 
 def test_the_numbers_are_those_of_evaluate_with_the_file_and_with_the_flags(

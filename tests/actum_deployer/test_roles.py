@@ -10,6 +10,7 @@ from actum import keys
 from actum.keys import Topic
 from actum.node import replay
 from actum_deployer.access_control import TOLD, access_control, link_rules, rules
+from actum_deployer.deployment import Deployment, hosts_of
 from actum_deployer.roles import BRIDGE, GATEWAY, IMAGES, PAGE, PEOPLES, ROBOT, ROLES, SWITCH, VIEWER, Role, identity
 from conftest import NEEDS_ROS2_EXTRA
 from marker_tracker.node import MarkerTracker
@@ -21,7 +22,8 @@ from web_dashboard.node import WebDashboard
 
 BY_SERVICE = {service: role for role in ROLES for service in role.services}
 NODES = (PosePreprocessor, SomClassifier, MarkerTracker, ActionFusion, ModelTrainer, WebDashboard)
-EVERYBODY = [(role, "kinect0") for role in ROLES]
+EVERYBODY = access_control(Deployment(hosts_of("camera=a,compute=b"), passwords=True, ros_domain=0))
+IDENTITIES = {identity(role, "kinect0") for role in ROLES}
 
 
 def allowed(role: Role, flow: str, message: str, ros_domain: int | None = None) -> set[str]:
@@ -87,22 +89,17 @@ def test_what_is_received_is_what_is_read(role: Role) -> None:
 
 
 def test_every_identity_has_a_policy_and_every_rule_is_somebodys() -> None:
-    section = access_control(EVERYBODY, ["router.camera"], images_cross=False, passwords=True)
-    assert section["default_permission"] == "deny"
-    assert {subject["id"] for subject in section["subjects"]} == {
-        *(identity(role, "kinect0") for role in ROLES), "router.camera",
-    }  # fmt: skip
-    used = [rule for policy in section["policies"] for rule in policy["rules"]]
-    assert {rule["id"] for rule in section["rules"]} == {*used}
+    assert EVERYBODY["default_permission"] == "deny"
+    assert {subject["id"] for subject in EVERYBODY["subjects"]} == {*IDENTITIES, "router.camera", "router.compute"}
+    used = [rule for policy in EVERYBODY["policies"] for rule in policy["rules"]]
+    assert {rule["id"] for rule in EVERYBODY["rules"]} == {*used}
     assert used.count(TOLD) == len(ROLES)
-    assert {rule["permission"] for rule in section["rules"]} == {"allow"}
+    assert {rule["permission"] for rule in EVERYBODY["rules"]} == {"allow"}
 
 
 def test_people_are_known_by_certificate_and_user_and_routers_by_certificate() -> None:
-    section = access_control(EVERYBODY, ["router.camera"], images_cross=False, passwords=True)
-    with_user = {subject["id"] for subject in section["subjects"] if "usernames" in subject}
-    assert with_user == {identity(role, "kinect0") for role in ROLES}
-    assert {role.name for role in PEOPLES} <= with_user
+    assert {subject["id"] for subject in EVERYBODY["subjects"] if "usernames" in subject} == IDENTITIES
+    assert {role.name for role in PEOPLES} <= IDENTITIES
 
 
 def test_the_bridge_to_ros_may_put_and_read_what_its_table_says_and_a_robot_the_other_side() -> None:
@@ -129,11 +126,11 @@ def test_a_robot_has_nothing_of_ours_and_without_a_bridge_nothing_at_all() -> No
     every = {each for rule in rules(ROBOT, "", 0) for each in rule["key_exprs"]}
     assert every
     assert not any(each.startswith("actum/") for each in every)
-    assert [*rules(ROBOT, "")] == []
+    assert [*rules(ROBOT, "", None)] == []
 
 
 @pytest.mark.parametrize("cross", [False, True])
 def test_images_pass_between_routers_only_where_they_may(cross: bool) -> None:
-    content = {each for rule in link_rules(cross) if "put" in rule["messages"] for each in rule["key_exprs"]}
+    content = {each for rule in link_rules(cross, None) if "put" in rule["messages"] for each in rule["key_exprs"]}
     assert any("image" in expression for expression in content) == cross
     assert patterns([topic for topic in keys.TOPICS if topic not in IMAGES], "*") <= content

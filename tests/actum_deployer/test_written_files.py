@@ -1,6 +1,5 @@
 """The folders that are written: who may read them, what each host gets, and what Zenoh and Compose read."""
 
-import stat
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +19,6 @@ from compose_files import DEPLOY, MAIN, services_of
 HOSTS = hosts_of("camera=192.168.1.5,compute=192.168.1.6")
 CAMERA = DEPLOY / "compose.camera-host.yml"
 USUAL = Path(__file__).parents[2] / "deploy" / "zenoh" / "router.json5"
-SECRETS = {"key.pem", "user.json5", "users.txt"}
 
 
 @pytest.fixture
@@ -31,13 +29,6 @@ def written(tmp_path: Path) -> Path:
 
 def compose(root: Path, host: str) -> dict[str, Any]:
     return yaml.safe_load((root / host / "compose.yml").read_text())["services"]
-
-
-def test_nobody_but_the_owner_reads_what_is_secret(written: Path) -> None:
-    found = [file for file in written.rglob("*") if file.name in SECRETS]
-    assert {file.name for file in found} == SECRETS
-    assert {stat.S_IMODE(file.stat().st_mode) for file in found} == {0o600}
-    assert {stat.S_IMODE(file.parent.stat().st_mode) for file in found} == {0o700}
 
 
 def test_each_host_has_the_credentials_of_its_services_and_no_others(written: Path) -> None:

@@ -28,7 +28,7 @@ HEALTHY_WITHIN_S = 5.0
 LARGEST_IMAGE_MB = 350
 """Of any image but the camera's, as `docker image ls` counts."""
 COMPOSE_FILES = (MAIN, *sorted(DEPLOY.glob("compose.*.yml")))
-OVERLAYS = {"zenohd", "realsense", "openni2", "one-router"}
+OVERLAYS = {"zenohd", "realsense", "openni2"}
 """Files that are laid over another, whose services they change."""
 HARDENED = {
     "init": True,
@@ -37,7 +37,6 @@ HARDENED = {
     "cap_drop": ["ALL"],
     "security_opt": ["no-new-privileges:true"],
 }
-ELSEWHERE = {"ACTUM_CONNECT": "tcp/192.0.2.1:7447", "ACTUM_MODELS": "/srv/models"}
 LOOSENING = {"read_only", "tmpfs", "cap_drop", "cap_add", "security_opt", "privileged", "user", "mem_limit"}
 
 
@@ -139,32 +138,6 @@ def test_who_answers_keeps_the_answers_where_they_stay(services):
         assert f"state:{folder}" in services[name]["volumes"]
 
 
-def test_two_hosts_together_run_the_six_services_and_each_a_router():
-    hosts = [services_of(DEPLOY / f"compose.{host}-host.yml") for host in ("kinect", "compute")]
-    extended = [(name, service["extends"]) for host in hosts for name, service in host.items()]
-    assert sorted(name for name, _ in extended) == sorted(["router", "router", "watch", *SIX])
-    assert all(extends == {"file": "../docker-compose.yml", "service": name} for name, extends in extended)
-
-
-def test_where_the_sensors_host_has_the_only_router_all_others_connect_to_it():
-    compute = services_of(DEPLOY / "compose.compute-host.yml")
-    assert compute["som_classifier"]["environment"]["ACTUM_MODEL"] == "/models/model.npz", "where no trainer runs"
-    changed = services_of(DEPLOY / "compose.one-router.yml")
-    assert changed.keys() == compute.keys()
-    assert changed["router"] == {"profiles": ["unused"]}
-    assert all("ACTUM_CONNECT" in service["environment"] for name, service in changed.items() if name != "router")
-
-
-def test_the_routers_of_two_hosts_are_alike_but_for_images_and_who_they_are():
-    sensor, compute = (
-        zenoh.Config.from_file(DEPLOY / "zenoh" / f"{name}.json5") for name in ("router", "compute-router")
-    )
-    for path in ("mode", "listen", "scouting", "transport", "adminspace"):
-        assert sensor.get_json(path) == compute.get_json(path)
-    [subject] = json.loads(sensor.get_json("access_control/subjects"))
-    assert subject["zids"] == [json.loads(compute.get_json("id"))]
-
-
 def test_zenohd_reads_the_same_configuration_file(services):
     mounted = services["router"]["volumes"][0].split(":")
     assert (ROOT / mounted[0]).samefile(ROUTER_CONFIG)
@@ -238,19 +211,8 @@ def deaths(since_s: float) -> list[dict[str, Any]]:
 
 
 @pytest.mark.containers
-@pytest.mark.parametrize(
-    ("files", "environment"),
-    [
-        (["docker-compose.yml"], {}),
-        (["docker-compose.yml", "deploy/compose.zenohd.yml"], {}),
-        (["deploy/compose.kinect-host.yml"], {}),
-        (["deploy/compose.compute-host.yml"], ELSEWHERE),
-        (["deploy/compose.compute-host.yml", "deploy/compose.one-router.yml"], ELSEWHERE),
-    ],
-)
-def test_compose_accepts(files, environment, monkeypatch):
-    for name, value in environment.items():
-        monkeypatch.setenv(name, value)
+@pytest.mark.parametrize("files", [["docker-compose.yml"], ["docker-compose.yml", "deploy/compose.zenohd.yml"]])
+def test_compose_accepts(files):
     resolved = engine("compose", *(word for file in files for word in ("-f", file)), "config", "--format", "json")
     published = {name: s["ports"] for name, s in json.loads(resolved)["services"].items() if "ports" in s}
     assert all(name in ("router", "web_dashboard") and len(ports) == 1 for name, ports in published.items())

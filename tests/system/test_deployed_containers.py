@@ -5,11 +5,12 @@ import os
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from benchmarks.rig.tcp_proxy import TcpProxy
 
 from actum import keys
 from actum.messages import Event
@@ -37,11 +38,12 @@ def actum(*arguments: str) -> None:
 
 @dataclass
 class Taken:
-    """The deployment's folder, the address of both hosts, and each host's port."""
+    """The deployment's folder, the address of both hosts, each host's port, and the link between their routers."""
 
     folder: Path
     address: str
     ports: dict[str, int]
+    link: TcpProxy
 
     def compose(self, host: str, *arguments: str) -> str:
         return docker("compose", "--project-directory", str(self.folder / host), *arguments)
@@ -56,24 +58,28 @@ class Taken:
 
 @pytest.fixture(scope="module")
 def taken(tmp_path_factory: pytest.TempPathFactory, scene_model: Path) -> Iterator[Taken]:
-    """Both hosts on this machine, up, with a model; gone afterwards."""
+    """Both hosts on this machine, up, with a model, and linked by a proxy; gone afterwards."""
     docker("compose", "--file", str(MAIN), "build", "--quiet")
     address = gateway_of_bridge()
     ports = {host: int(free_endpoint().rpartition(":")[2]) for host in ("camera", "compute")}
-    made = Taken(tmp_path_factory.mktemp("deployment"), address, ports)
+    folder = tmp_path_factory.mktemp("deployment")
     hosts = ",".join(f"{host}={address}:{port}" for host, port in ports.items())
-    actum("deploy", "init", str(made.folder), "--hosts", hosts, "--passwords", "--simulate")
+    actum("deploy", "init", str(folder), "--hosts", hosts, "--passwords", "--simulate")
     scene = "".join(f"ACTUM_{name.upper()}={value}\n" for name, value in SCENE.items())
-    settings = made.folder / "camera" / "settings.env"
+    settings = folder / "camera" / "settings.env"
     settings.write_text(settings.read_text() + scene)
-    try:
-        for host in ports:
-            made.up(host)
-        put_model(made, scene_model)
-        yield made
-    finally:
-        for host in ports:
-            made.compose(host, "down", "--volumes")
+    with TcpProxy(ports["camera"], host=address, seed=1) as link:
+        router = folder / "compute" / "router.json5"
+        router.write_text(router.read_text().replace(f"{address}:{ports['camera']}", f"{address}:{link.port}"))
+        made = Taken(folder, address, ports, link)
+        try:
+            for host in ports:
+                made.up(host)
+            put_model(made, scene_model)
+            yield made
+        finally:
+            for host in ports:
+                made.compose(host, "down", "--volumes")
 
 
 def put_model(taken: Taken, model: Path) -> None:
@@ -92,28 +98,78 @@ def put_model(taken: Taken, model: Path) -> None:
         subprocess.run(command, stdin=content, check=True)
 
 
-def test_the_other_host_tells_what_one_host_tells(taken, scene_model):
-    expected, over = on_one_host(scene_model), threading.Event()
+def undisturbed(link: TcpProxy, over: threading.Event) -> None:
+    """A cable as it should be."""
+
+
+def delayed(link: TcpProxy, over: threading.Event) -> None:
+    """A slow radio link."""
+    link.delay(0.25, 0.2)
+
+
+def stalling(link: TcpProxy, over: threading.Event) -> None:
+    """A switch that lets nothing pass, again and again."""
+    while not over.wait(3.0):
+        link.stall(1.0)
+        over.wait(1.0)
+
+
+def cut_now_and_then(link: TcpProxy, over: threading.Event) -> None:
+    """A loose plug."""
+    while not over.wait(6.0):
+        link.cut()
+        over.wait(1.0)
+        link.mend()
+
+
+@pytest.mark.parametrize("disturb", [undisturbed, delayed, stalling, cut_now_and_then])
+def test_the_other_host_tells_what_one_host_tells(
+    taken: Taken, scene_model: Path, disturb: Callable[[TcpProxy, threading.Event], None]
+) -> None:
+    expected, over, prefix = on_one_host(scene_model), threading.Event(), f"{disturb.__name__}-"
+    assert len(expected) == ACTIONS
     with taken.client("switch", "camera") as switch, taken.client("viewer", "compute") as viewer:
         events = viewer.listen(keys.pattern(keys.EVENT, viewer.sensor))
         truths = switch.listen(keys.key(keys.TRUTH, switch.sensor))
         assert switch.wait_for_subscriber(keys.SEGMENT, SCENE_S)
-        marking = threading.Thread(target=mark, args=(switch, truths, "deployed-", over))
-        marking.start()
+        threads = [
+            threading.Thread(target=mark, args=(switch, truths, prefix, over)),
+            threading.Thread(target=disturb, args=(taken.link, over)),
+        ]
+        for thread in threads:
+            thread.start()
         try:
             taken.compose("camera", "up", "--detach", "--force-recreate", "sensor_gateway")
-            heard = collect(events, Event, lambda found: len(told(found, "deployed-")) >= ACTIONS, SCENE_S)
+            heard = collect(events, Event, lambda found: len(told(found, prefix)) >= ACTIONS, SCENE_S)
         finally:
             over.set()
-            marking.join()
-    assert told(heard, "deployed-") == expected
+            for thread in threads:
+                thread.join()
+            taken.link.delay(0.0)
+            taken.link.mend()
+    assert told(heard, prefix) == expected
 
 
-def test_a_viewer_sees_no_images_of_a_camera_that_makes_some(taken):
-    with taken.client("viewer", "camera") as viewer, taken.client("recorder", "camera") as recorder:
-        unseen, seen = (client.listen(f"actum/{client.sensor}/image/**") for client in (viewer, recorder))
+def test_the_hosts_share_no_network_and_nobody_is_root(taken: Taken) -> None:
+    networks: list[set[str]] = []
+    for host in taken.ports:
+        found = [json.loads(docker("inspect", one))[0] for one in taken.compose(host, "ps", "--quiet").split()]
+        networks.append({network for one in found for network in one["NetworkSettings"]["Networks"]})
+        assert {one["HostConfig"]["ReadonlyRootfs"] for one in found} == {True}
+        assert {docker("exec", one["Id"], "id", "-u") for one in found} == {"10001\n"}
+    assert len(networks[0]) == len(networks[1]) == 1
+    assert not networks[0] & networks[1]
+
+
+def test_a_viewer_and_the_other_host_see_no_images_of_a_camera_that_makes_some(taken: Taken) -> None:
+    with (
+        taken.client("viewer", "camera") as viewer,
+        taken.client("recorder", "compute") as far,
+        taken.client("recorder", "camera") as recorder,
+    ):
+        *unseen, seen = (client.listen(f"actum/{client.sensor}/image/**") for client in (viewer, far, recorder))
         wait_until(lambda: seen.take() is not None, "an image for who may see them", HEALTHY_S)
-        assert unseen.take() is None
+        assert [each.take() for each in unseen] == [None, None]
 
 
 def test_everything_stays_up_while_its_certificates_are_renewed(taken):

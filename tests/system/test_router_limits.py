@@ -11,7 +11,7 @@ import zenoh
 from actum import keys
 from actum.messages import Message
 from actum.runtime.session import client_config, secret_config
-from actum_deployer.message_limits import IMAGES_HZ
+from actum_deployer.router_file import IMAGES_HZ
 from deployments import Deployed, deployed
 from empty_messages import image, skeleton
 from live import PATIENCE_S, collect

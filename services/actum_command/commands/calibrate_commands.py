@@ -1,9 +1,10 @@
 """`actum calibrate`: a camera's intrinsics, where one camera is seen from another, and how one is tilted."""
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import typer
 
@@ -21,7 +22,7 @@ from actum_calibrator.pairs import Pair, PairingError, pair_files, pictures_in
 from actum_calibrator.view_set import GOOD_COVERAGE, PoorSetError
 from actum_command.commands.calibrate_up_command import up
 from actum_command.commands.plain_help import PlainTyper
-from actum_command.commands.terminal import connect, console, fail, refuse_ending, say
+from actum_command.commands.terminal import connect, console, fail, failing_on, refuse_ending, say
 from actum_command.live_calibration import SilentStreamError, collect_pairs, collect_views
 
 app = PlainTyper(
@@ -78,20 +79,16 @@ def intrinsics(
     """
     if live == bool(images):
         fail("give either pictures of the board, or --live to take the pictures now")
-    files = _files(images or [])
+    files = [file for path in images or [] for file in (pictures_in(path) if path.is_dir() else [path])]
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     views, unusable = (_live_views(finder), []) if live else _views(finder, files)
-    try:
+    with _refusing_poor(unusable, output):
         fit = estimate_intrinsics(views)
-    except PoorSetError as error:
-        _refuse([*error.reasons, *complaints(unusable)], output)
     calibration = calibration_of(fit, _today())
-    try:
+    with failing_on(OSError):
         calibration.save(output)
         write_whole(picture, coverage_picture(fit, views))
-    except OSError as error:
-        fail(str(error))
     _report_intrinsics(fit)
     say(f"written to {output} (calibration {calibration.id}); look at {picture}")
 
@@ -136,42 +133,23 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect1,kinect0")
     refuse_ending(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
-    try:
+    with failing_on(CalibrationError, PairingError, OSError):
         cameras = Calibration.load(markers_camera), Calibration.load(people_camera)
         usable, unusable = (_live_pairs(_sensors(live), finder), []) if live else _pairs(finder, pairs or [])
-        fit = _extrinsics(usable, unusable, cameras, output)
+        with _refusing_poor(unusable, output):
+            fit = estimate_extrinsics(usable, *cameras)
         calibration = with_extrinsics(cameras[0], fit, _today())
         calibration.save(output)
-    except (CalibrationError, PairingError, OSError) as error:
-        fail(str(error))
     _report_extrinsics(fit, usable)
     say(f"written to {output} (calibration {calibration.id})")
-
-
-def _extrinsics(
-    pairs: Sequence[Pair],
-    unusable: Sequence[UnusablePictureError],
-    cameras: tuple[Calibration, Calibration],
-    output: Path,
-) -> Extrinsics:
-    try:
-        return estimate_extrinsics(pairs, *cameras)
-    except PoorSetError as error:
-        _refuse([*error.reasons, *complaints(unusable)], output)
 
 
 def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Board:
     columns, _, rows = squares.partition("x")
     if not (columns.isdecimal() and rows.isdecimal()):
         fail(f"--board {squares!r} does not name the numbers of squares: give columns x rows, such as 7x5")
-    try:
+    with failing_on(PatternError):
         return Board(int(columns), int(rows), square_mm / 1000, marker_mm / 1000, family)
-    except PatternError as error:
-        fail(str(error))
-
-
-def _files(paths: Sequence[Path]) -> list[Path]:
-    return [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
 
 
 def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
@@ -209,20 +187,14 @@ def _views(finder: BoardFinder, files: Sequence[Path]) -> tuple[list[View], list
 
 
 def _live_views(finder: BoardFinder) -> list[View]:
-    with connect() as client:
-        try:
-            return collect_views(client, finder, stop_on_signals(), console.print)
-        except SilentStreamError as error:
-            fail(str(error))
+    with connect() as client, failing_on(SilentStreamError):
+        return collect_views(client, finder, stop_on_signals(), console.print)
 
 
 def _live_pairs(sensors: tuple[str, str], finder: BoardFinder) -> list[Pair]:
     console.print("hold the board still where both cameras see it; change its place and its tilt for each pair")
-    with connect() as client:
-        try:
-            return collect_pairs(client, sensors, finder, stop_on_signals(), console.print)
-        except SilentStreamError as error:
-            fail(str(error))
+    with connect() as client, failing_on(SilentStreamError):
+        return collect_pairs(client, sensors, finder, stop_on_signals(), console.print)
 
 
 def _pairs(finder: BoardFinder, paths: Sequence[Path]) -> tuple[list[Pair], list[UnusablePictureError]]:
@@ -271,8 +243,14 @@ def _report_extrinsics(fit: Extrinsics, pairs: Sequence[Pair]) -> None:
     )
 
 
-def _refuse(reasons: Sequence[str], output: Path) -> NoReturn:
-    fail("\n  ".join([f"{output} was not written, because the calibration failed:", *reasons]))
+@contextmanager
+def _refusing_poor(unusable: Sequence[UnusablePictureError], output: Path) -> Iterator[None]:
+    """Return a context that ends the command where its pictures do not suffice, and names what each one lacks."""
+    try:
+        yield
+    except PoorSetError as error:
+        reasons = [*error.reasons, *complaints(unusable)]
+        fail("\n  ".join([f"{output} was not written, because the calibration failed:", *reasons]))
 
 
 def _today() -> datetime.date:

@@ -11,8 +11,8 @@ from actum.messages import Skeleton
 from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
 from actum.runtime import stop_on_signals
-from actum_calibrator.up_direction import UpDirection, UpDirectionEstimator
-from actum_command.commands.terminal import connect, fail, say
+from actum_calibrator.up_direction import UpDirectionEstimator
+from actum_command.commands.terminal import connect, fail, failing_on, say
 from actum_command.live_calibration import SilentStreamError, live_skeletons
 
 PAUSE_NS = SECOND_NS // 2  # shortest time between two instructions, so that each can be read
@@ -40,16 +40,13 @@ def up(
     for frame in frames:
         estimator.offer(frame)
         if estimator.up is not None:
-            _report(estimator.up)
-            return
+            break
         is_new = estimator.instruction != instruction and abs(frame.stamp_ns - instructed_ns) >= PAUSE_NS
         if recording is None and is_new:
             instruction, instructed_ns = estimator.instruction, frame.stamp_ns
             say(f"  {instruction}")
-    fail(f"nobody stood upright and still for two seconds. The last instruction was: {estimator.instruction}")
-
-
-def _report(tilt: UpDirection) -> None:
+    if (tilt := estimator.up) is None:
+        fail(f"nobody stood upright and still for two seconds. The last instruction was: {estimator.instruction}")
     say(
         f"the camera looks {_signed(tilt.pitch_deg, 'up', 'down')} and is turned "
         f"{_signed(tilt.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {tilt.sway_deg:.1f} degrees)"
@@ -64,18 +61,13 @@ def _signed(angle_deg: float, positive: str, negative: str) -> str:
 
 
 def _recorded(path: Path) -> Iterator[Skeleton]:
-    try:
+    with failing_on(RecordingError):
         for message in Recording(path).messages((keys.SKELETON,)):
             if isinstance(message, Skeleton):
                 yield message
-    except RecordingError as error:
-        fail(str(error))
 
 
 def _live() -> Iterator[Skeleton]:
     stop = stop_on_signals()
-    with connect() as client:
-        try:
-            yield from live_skeletons(client, stop, say)
-        except SilentStreamError as error:
-            fail(str(error))
+    with connect() as client, failing_on(SilentStreamError):
+        yield from live_skeletons(client, stop, say)

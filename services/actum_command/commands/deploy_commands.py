@@ -1,7 +1,5 @@
 """`actum deploy`: what the hosts of a lab need, each a folder, with credentials that their routers ask for."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -12,8 +10,8 @@ from actum.keys import InvalidKeyError
 from actum.runtime import needs_extra
 from actum.settings import SettingsError
 from actum_command.commands.plain_help import PlainTyper
-from actum_command.commands.terminal import fail, say
-from actum_deployer.deployment import Deployment, Host, hosts_of
+from actum_command.commands.terminal import fail, failing_on, say
+from actum_deployer.deployment import Deployment, hosts_of
 
 app = PlainTyper(
     no_args_is_help=True,
@@ -106,11 +104,9 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
     """
     if not_secured and passwords:
         fail("--open and --passwords exclude each other: leave out one of them")
-    try:
+    with failing_on(SettingsError, InvalidKeyError):
         placed = hosts_of(hosts, sensors)
-    except (SettingsError, InvalidKeyError) as error:
-        fail(str(error))
-    with _refusing(), needs_extra("deploy"):
+    with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, revoked_before, write_deployment
 
         folder.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
@@ -123,7 +119,7 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
     if deployment.secured:
         say(
             f"people: copy a folder of {folder / 'people'} to a person's machine and name it in ACTUM_CREDENTIALS: "
-            f"{_example(placed[0])}"
+            f"ACTUM_CONNECT=tls/{placed[0].endpoint} ACTUM_CREDENTIALS=…/viewer actum watch"
         )
         say(f"keep {folder / 'authority'} private: its key signs credentials", style="yellow")
 
@@ -153,7 +149,7 @@ def rotate(
     --revoke, and copy router.json5 to each host: a router then refuses the old credentials. A router in a container has
     to be restarted for this.
     """
-    with _refusing(), needs_extra("deploy"):
+    with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment
 
         Deployment.load(folder)  # else a folder that holds none would get a file
@@ -169,16 +165,3 @@ def rotate(
             "the credentials are revoked once every host has its new router.json5; for a router in a container, "
             "run: docker compose restart router"
         )
-
-
-@contextmanager
-def _refusing() -> Iterator[None]:
-    """Return a context that ends the command with the reason where something cannot be done."""
-    try:
-        yield
-    except (SettingsError, OSError) as error:
-        fail(str(error))
-
-
-def _example(host: Host) -> str:
-    return f"ACTUM_CONNECT=tls/{host.endpoint} ACTUM_CREDENTIALS=…/viewer actum watch"

@@ -11,9 +11,8 @@ from actum.recording import Recording
 from actum.runtime import Pace, stop_on_signals
 from actum.runtime.stopping import wait_for
 from actum_command.commands.recording_options import refuse_output
-from actum_command.commands.terminal import fail, say
-from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown
-from actum_command.viewers.showing import Showing
+from actum_command.commands.terminal import fail, failing_on, refuse_without, say
+from actum_command.commands.viewed_streams import RecordingArgument, Showing, streams_of, tell_shown
 
 POLL_S = 0.1  # how soon a stop takes effect while nobody has subscribed
 MOST_REFUSALS = 20  # distinct refusals that are printed
@@ -57,19 +56,19 @@ def foxglove(
 
     origins = [_origin(each) for each in origin or []]
     stop, subscribed = stop_on_signals(), Flag()
-    try:
-        with (
-            streams_of(recording, Pace(speed)) as streams,
-            served(streams.sensors, host, port, subscribed, origins, _Refusals()) as (stream, address),
-        ):
-            say(f"open a connection to {address} in Foxglove; Ctrl-C stops")
-            if recording is not None:
-                _wait_for_subscriber(subscribed, stop)
-            showing = Showing(stream.show)
-            streams.give(showing, stop)
-            tell_shown(showing, "served")
-    except ServerError as error:
-        fail(str(error))
+    with (
+        failing_on(ServerError),
+        streams_of(recording, Pace(speed)) as streams,
+        served(streams.sensors, host, port, subscribed, origins, _Refusals()) as (stream, address),
+    ):
+        say(f"open a connection to {address} in Foxglove; Ctrl-C stops")
+        if recording is not None:
+            while not subscribed.is_set() and not stop.wait(POLL_S):
+                pass
+            wait_for(stop, SUBSCRIBING_S)
+        showing = Showing(stream.show)
+        streams.give(showing, stop)
+        tell_shown(showing, "served")
 
 
 class _Refusals:
@@ -101,13 +100,6 @@ def _origin(text: str) -> str:
     ):
         fail(advice)
     return f"{site.scheme}://{site.netloc.lower()}"
-
-
-def _wait_for_subscriber(subscribed: Flag, stop: Flag) -> None:
-    """Wait until somebody has subscribed, or until stopped."""
-    while not subscribed.is_set() and not stop.wait(POLL_S):
-        pass
-    wait_for(stop, SUBSCRIBING_S)
 
 
 def export(

@@ -9,7 +9,7 @@ import typer
 
 from actum_command.commands.plain_help import PlainTyper
 from actum_command.commands.progress_bars import bars
-from actum_command.commands.terminal import fail, say
+from actum_command.commands.terminal import fail, failing_on, say
 from actum_dataset_importer.clips import DEFAULT_PATTERN, Naming
 from actum_dataset_importer.importing import (
     ImportReport,
@@ -122,21 +122,16 @@ def video(
     Each clip becomes a recording with one labelled segment and without images. The camera's settings are read from the
     environment: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION, ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M.
     """
-    try:
+    with failing_on(ValueError):
         naming, settings = Naming.of(pattern, names), Settings(people=people)
         opened = partial(estimator_of, settings)
         with opened():
             pass
         _run(partial(import_video, naming=naming, optics=optics_of(settings), opened=opened), source, out)
-    except ValueError as error:
-        fail(str(error))
 
 
 def _run(importer: Callable[[Path, Path, Progress], ImportReport], source: Path, out: Path) -> None:
-    try:
-        with bars() as progress:
-            report = importer(source, out, lambda done, total: progress("importing", done, total))
-    except (DatasetError, OSError) as error:
-        fail(str(error))
+    with failing_on(DatasetError, OSError), bars() as progress:
+        report = importer(source, out, lambda done, total: progress("importing", done, total))
     say(str(report))
     say(f"written to {out}")

@@ -1,20 +1,20 @@
 """`actum inspect`: pictures of what a model has learnt and of its answers to recordings."""
 
 import time
-from importlib.util import find_spec
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from actum.installing import adding
-from actum.recording import RecordingError
+from actum.recording import Recording, RecordingError
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
-from actum_command.commands.terminal import fail, say
-from actum_command.inspection_page import NoSegmentError, write_inspection
+from actum_command.commands.terminal import fail, refuse_without, say
+from actum_model_trainer.progress import Progress
+from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
-from som_classifier.model_maps import NoMapsError
+from som_classifier.model_maps import NoMapsError, maps_of
 
 FORMATS = ("png", "svg")
 """Formats that pictures can be written in."""
@@ -60,20 +60,51 @@ def inspect(
         fail(f"{output} looks like a file: give a folder for the pictures and index.html")
     if output.exists() and not output.is_dir():
         fail(f"{output} is not a folder: give a folder for the pictures and index.html")
-    if find_spec("matplotlib") is None:
-        fail(f"matplotlib, which draws the pictures, is not installed: {adding('model-inspector')}")
+    refuse_without("matplotlib", "matplotlib, which draws the pictures,", "model-inspector")
     try:
         model = load_model(model_file)
         output.mkdir(parents=True, exist_ok=True)
         recordings = chosen(files, person, with_excluded) if files else []
         with bars() as progress:
-            count = write_inspection(model, recordings, output, picture_format, progress)
-    except NoSegmentError as error:
-        tell_unread(recordings)
-        fail(str(error))
+            count = _write_inspection(model, recordings, output, picture_format, progress)
     except NoMapsError as error:
         fail(f"{error}: give recordings too, and the command draws how the model recognises the actions in them")
     except (ModelError, RecordingError, OSError) as error:
         fail(str(error))
     tell_unread(recordings)
     say(f"{count} pictures in {time.monotonic() - began_s:.1f} s: open {output / 'index.html'}")
+
+
+def _write_inspection(
+    model: Model, recordings: Sequence[Recording], folder: Path, ending: str, progress: Progress
+) -> int:
+    """Write pictures and page, and return how many pictures there are; fail where recordings have no marked segment.
+
+    Raises:
+        NoMapsError: there are no recordings, and the model has no maps.
+        RecordingError: a recording is damaged.
+        OSError: something cannot be written.
+    """
+    from actum_model_inspector.answered import answered_segments  # Matplotlib takes its time and need not be installed
+    from actum_model_inspector.folder import PAGE, note
+    from actum_model_inspector.html_page import page
+    from actum_model_inspector.inspection import pictures, write
+    from actum_model_trainer.evaluation import evaluate
+
+    if not recordings and maps_of(model) is None:
+        raise NoMapsError(model)
+    segments = answered_segments(model, recordings, progress)
+    if recordings and not segments:
+        tell_unread(recordings)
+        fail(
+            "the given recordings contain no marked action: mark when actions start and end, either while recording "
+            "(see 'actum segment --help') or afterwards with 'actum label'"
+        )
+    labelled = any(segment.label is not None for segment in segments)
+    evaluation = evaluate(model, recordings, progress) if labelled else None
+    planned = list(pictures(model, segments, evaluation))
+    written = write(planned, folder, ending, progress)
+    index = folder / PAGE
+    index.write_text(page(model, segments, evaluation, planned, written), encoding="utf-8")
+    note(index)
+    return len(planned)

@@ -3,28 +3,24 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from actum.installing import adding
 from actum.node import SECOND_NS
 from actum.recording import Recording, RecordingError
 from actum_command.commands.plain_help import LISTS, ListingGroup, PlainTyper
 from actum_command.commands.recording_options import (
+    AgentOption,
     AllOption,
     PersonOption,
     RecordingFile,
     chosen,
-    in_ns,
-    refuse_length,
     tell_unread,
 )
-from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
-from actum_command.cut_lines import cut_lines
-from actum_command.segment_lines import segment_lines
+from actum_command.commands.terminal import fail, failing_on, refuse_unwritable, refuse_without, say
+from actum_command.segment_lines import cut_lines, segment_lines
 from actum_examples import edits
 from actum_examples.marked_segment import MarkedSegment
 from actum_examples.take import Take, read_take
@@ -49,16 +45,7 @@ SegmentName = Annotated[
     ),
 ]
 Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action, such as wave")]
-Agent = Annotated[
-    int | None,
-    typer.Option(
-        min=1,
-        help=(
-            "number of the person who acts, as in the field agent of messages; default: the person nearest to the "
-            "camera"
-        ),
-    ),
-]
+LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
 
 @app.command(LISTS)
@@ -74,15 +61,13 @@ def list_command(
     sensors, the sensor.
     """
     recordings, all_lines = chosen(files, person, with_excluded), []
-    try:
+    with failing_on(RecordingError):
         for recording in recordings:
             say(f"{recording.path}, person {recording.person or '(unknown)'}")
             lines = segment_lines(read_take(recording))
             for line in lines:
                 say(line.text, style=None if line.usable else "yellow")
             all_lines += lines
-    except RecordingError as error:
-        fail(str(error))
     tell_unread(recordings)
     say(f"{len(all_lines)} segments, {sum(line.usable for line in all_lines)} usable")
 
@@ -139,7 +124,7 @@ def delete(file: RecordingFile, name: SegmentName) -> None:
 def relabel(file: RecordingFile, name: SegmentName, label: Label) -> None:
     """Change the label of a segment."""
     take, segment = _found(file, name)
-    refuse_length(label)
+    _refuse_length(label)
     with _editing(file):
         edits.relabel(take, segment, label)
     say(f"{segment.segment_id} is labelled {label!r} in {file}")
@@ -156,13 +141,14 @@ def add(
         float, typer.Argument(metavar="END", help="end of the action, in seconds from the beginning of the recording")
     ],
     label: Label,
-    agent: Agent = None,
+    agent: AgentOption = None,
 ) -> None:
     """Label an action in a recording by its start and end, such as actum label add REC 12.3 14.1 wave."""
     take = _opened(file)
-    refuse_length(label)
+    _refuse_length(label)
     with _editing(file):
-        edits.add(take, take.first_ns + in_ns(start), take.first_ns + in_ns(end), label, agent)
+        start_ns, end_ns = (_in_ns(each, f"{each:g}", "a number of seconds such as 12.3") for each in (start, end))
+        edits.add(take, take.first_ns + start_ns, take.first_ns + end_ns, label, agent)
     say(f"{label!r} from {start:.2f} s to {end:.2f} s is in {file}")
 
 
@@ -181,7 +167,7 @@ def cut(
     that were marked or moved by hand stay.
     """
     take = _opened(file)
-    refuse_length(label)
+    _refuse_length(label)
     with _editing(file):
         cuts = edits.cut_again(take, times, label)
     for line in cut_lines(cuts, take.first_ns):
@@ -209,26 +195,20 @@ def picture(
 
     Use the picture to check the labels.
     """
-    if find_spec("matplotlib") is None:
-        fail(f"matplotlib, which draws the picture, is not installed: {adding('model-inspector')}")
+    refuse_without("matplotlib", "matplotlib, which draws the picture,", "model-inspector")
     from actum_command.recording_picture import write_picture
 
-    refuse_unwritable(output)
-    refuse_ending(output, ".png", ".svg")
+    refuse_unwritable(output, ".png", ".svg")
     take = _opened(file)
-    try:
+    with failing_on(RecordingError, ModelError, OSError):
         write_picture(take, load_model(model) if model is not None else None, output)
-    except (RecordingError, ModelError, OSError) as error:
-        fail(str(error))
     say(f"{len(take.segments)} segments drawn: {output}")
 
 
 def _opened(file: Path) -> Take:
     """Read a recording that has frames or marks, or fail."""
-    try:
+    with failing_on(RecordingError):
         take = read_take(Recording(file))
-    except RecordingError as error:
-        fail(str(error))
     if take.first_ns == take.last_ns and not take.segments:
         fail(f"{file} contains no skeletons and no marked actions: give a recording of a person")
     return take
@@ -265,11 +245,19 @@ def _moved_to(text: str | None, now_ns: int | None, first_ns: int) -> int:
     """Return the stamp that a time means: absolute, or with a sign relative to where it is now."""
     if text is None:
         return now_ns or 0
+    advice = "from the start of the recording, such as 12.3, or how far to shift the current time, such as +0.2 or -0.1"
+    return ((now_ns or 0) if text[:1] in "+-" else first_ns) + _in_ns(text, f"{text!r}", f"seconds {advice}")
+
+
+def _in_ns(seconds: float | str, shown: str, advice: str) -> int:
+    """Return a time in nanoseconds, or fail where it is none, or beyond all numbers."""
     try:
-        offset_ns = round(float(text) * SECOND_NS)
+        return round(float(seconds) * SECOND_NS)
     except (ValueError, OverflowError):
-        fail(
-            f"{text!r} is not a time: give seconds from the start of the recording, such as 12.3, or how far to shift "
-            "the current time, such as +0.2 or -0.1"
-        )
-    return ((now_ns or 0) if text[:1] in "+-" else first_ns) + offset_ns
+        fail(f"{shown} is not a time: give {advice}")
+
+
+def _refuse_length(label: str) -> None:
+    """Fail where a label is empty, or too long for a mark."""
+    if not 0 < len(label) <= LONGEST_LABEL:
+        fail(f"the label must have 1 to {LONGEST_LABEL} characters")

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from actum_command.spelling import nearest
+from actum_command.misspelt import nearest
 
 F = TypeVar("F", bound=Callable[..., Any])
 WORDS = {"str": "TEXT", "path": "PATH", "file": "PATH", "int": "INTEGER", "float": "NUMBER", "bool": ""}

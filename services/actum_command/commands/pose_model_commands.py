@@ -1,16 +1,50 @@
 """`actum models`: the pose model that the camera needs."""
 
-from dataclasses import replace
+import hashlib
+import urllib.error
+import urllib.request
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from http.client import HTTPException
 from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.progress import BarColumn, DownloadColumn, Progress, TextColumn, TransferSpeedColumn
 
+from actum.atomic_file import replaced
 from actum_command.commands.plain_help import PlainTyper
-from actum_command.commands.terminal import errors, fail, refuse_ending, say
-from actum_command.model_download import POSE_MODEL, FetchError, Published, fetch
+from actum_command.commands.terminal import errors, failing_on, refuse_ending, say
 from sensor_gateway.settings import default_pose_model
+
+CHUNK_BYTES = 64 * 1024  # small enough that progress moves on a slow line, large enough that it costs nothing
+TIMEOUT_S = 30.0  # a server that sends nothing for so long is given up
+
+
+class FetchError(ValueError):
+    """A file that could not be fetched; the text names it, the reason and what to do."""
+
+
+@dataclass(frozen=True)
+class Published:
+    """A published file: its address, size (bytes) and SHA-256 (hexadecimal)."""
+
+    url: str
+    size: int
+    sha256: str
+
+    def is_at(self, path: Path) -> bool:
+        """Tell whether the file at a path has this one's digest."""
+        return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == self.sha256
+
+
+POSE_MODEL = Published(
+    url="https://storage.googleapis.com/mediapipe-models/pose_landmarker/pose_landmarker_full/float16/1/"
+    "pose_landmarker_full.task",
+    size=9_398_198,
+    sha256="5134a3aad27a58b93da0088d431f366da362b44e3ccfbe3462b3827a839011b1",
+)
+"""MediaPipe's full pose landmarker, revision 1, Apache-2.0."""
 
 app = PlainTyper(
     no_args_is_help=True,
@@ -54,17 +88,52 @@ def fetch_command(
     if published.is_at(path):
         say(f"the pose model is already at {path}")
         return
-    try:
-        _fetch(published, path)
-    except (FetchError, OSError) as error:
-        fail(str(error))
+    columns = TextColumn("fetching"), BarColumn(), DownloadColumn(), TransferSpeedColumn()
+    with failing_on(FetchError, OSError), Progress(*columns, console=errors, transient=True) as progress:
+        task = progress.add_task("fetching", total=published.size)
+        fetch(published, path, lambda done: progress.update(task, completed=done))
     say(f"downloaded and verified: {path}")
     if output is not None:
         say(f"to use it, set this for the gateway: ACTUM_POSE_MODEL={path}")
 
 
-def _fetch(published: Published, path: Path) -> None:
-    columns = TextColumn("fetching"), BarColumn(), DownloadColumn(), TransferSpeedColumn()
-    with Progress(*columns, console=errors, transient=True) as progress:
-        task = progress.add_task("fetching", total=published.size)
-        fetch(published, path, lambda done, _total: progress.update(task, completed=done))
+def fetch(published: Published, path: Path, progress: Callable[[int], None]) -> None:
+    """Fetch a file to a path; an existing one is replaced only once the new one is complete and checked.
+
+    `progress` is called after each chunk with the number of bytes received.
+
+    Raises:
+        FetchError: it cannot be reached, or its size or digest is another.
+        OSError: it cannot be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    digest, size = hashlib.sha256(), 0
+    with replaced(path) as file:
+        for chunk in _chunks(published.url):
+            file.write(chunk)
+            digest.update(chunk)
+            size += len(chunk)
+            if size > published.size:
+                break
+            progress(size)
+        if size < published.size:
+            raise FetchError(f"{published.url}: the download stopped after {size} of {published.size} bytes; try again")
+        if size > published.size or digest.hexdigest() != published.sha256:
+            raise FetchError(
+                f"the file downloaded from {published.url} is not the published one (SHA-256 {digest.hexdigest()}, "
+                f"expected {published.sha256}) and was deleted: check the proxy, and try again"
+            )
+
+
+def _chunks(url: str) -> Iterator[bytes]:
+    if not url.startswith(("http://", "https://")):
+        raise FetchError(f"{url} does not begin with http:// or https://: use such an address")
+    try:
+        with urllib.request.urlopen(url, timeout=TIMEOUT_S) as answer:
+            while chunk := answer.read(CHUNK_BYTES):
+                yield chunk
+    except urllib.error.HTTPError as error:
+        raise FetchError(f"{url}: the server answers {error.code} {error.reason}; try again later") from None
+    except (OSError, HTTPException, ValueError) as error:
+        reason = getattr(error, "reason", None) or error
+        raise FetchError(f"{url} cannot be reached ({reason}): check the network and the proxy") from None

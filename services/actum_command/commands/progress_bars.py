@@ -50,8 +50,9 @@ class Lines:
 def bars() -> Iterator[Report]:
     """Show progress on the error stream while the work lasts."""
     if errors.is_terminal:
-        with _drawn() as drawn:
-            yield drawn
+        columns = TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
+        with Progress(*columns, console=errors, transient=True) as progress:
+            yield Bars(progress)
         return
     lines, over = Lines(), threading.Event()
 
@@ -66,10 +67,3 @@ def bars() -> Iterator[Report]:
     finally:
         over.set()
         printing.join()
-
-
-@contextmanager
-def _drawn() -> Iterator[Bars]:
-    columns = TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
-    with Progress(*columns, console=errors, transient=True) as progress:
-        yield Bars(progress)

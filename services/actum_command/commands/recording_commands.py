@@ -17,11 +17,11 @@ from actum.rewriting import finish as finished
 from actum.rewriting import rewrite, unchanged
 from actum.runtime import stop_on_signals
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, refuse_output, tell_unread
-from actum_command.commands.service_flags import with_history_flags
-from actum_command.commands.terminal import connect, fail, say
-from actum_command.cut_lines import cut_lines
-from actum_command.event_keeping import keep_events
-from actum_command.service_settings import Given
+from actum_command.commands.service_flags import with_flags_of
+from actum_command.commands.terminal import connect, fail, failing_on, say
+from actum_command.history.event_recorder import keep_events
+from actum_command.segment_lines import cut_lines
+from actum_command.service_settings import HISTORY, Given, arguments_of
 from actum_command.streaming import put_all, store_all
 from actum_examples.repetition_recorder import RepetitionRecorder
 from actum_examples.stream_recorder import IMAGES, STREAMS, StreamRecorder
@@ -31,7 +31,7 @@ ALL = "all"
 """The value of `--marks` for every origin."""
 
 
-@with_history_flags
+@with_flags_of(HISTORY)
 def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     output: Annotated[
         Path,
@@ -113,7 +113,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     The --history options apply only with --events.
     """
     if events:
-        keep_events(output, given)
+        keep_events(output, arguments_of(HISTORY, given))
         return
     if finish:
         _finish(output)
@@ -123,10 +123,9 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         fail("--times needs the name of the repeated action: add --label NAME")
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
-    topics = STREAMS | IMAGES if images else STREAMS
     try:
         with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
-            stream = StreamRecorder(recorder, topics, label, _origins(marks, times))
+            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label, _origins(marks, times))
             listening = client.listen(keys.everything(client.sensor))
             say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
             storing = stream if times is None or label is None else _repeating(stream, label, times, stop)
@@ -243,9 +242,7 @@ def play(
     with connect() as client:
         if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
             fail(f"no service receives skeletons on {keys.key(keys.SKELETON, client.sensor)}: start pose_preprocessor")
-        try:
+        with failing_on(RecordingError):
             count = put_all(client, recordings, speed, stop)
-        except RecordingError as error:
-            fail(str(error))
     tell_unread(recordings)
     say(f"played {len(recordings)} recordings: {count} messages")

@@ -1,4 +1,4 @@
-"""Options that choose recordings, warnings about those that were read, and how one is changed."""
+"""Options that choose recordings and people, and warnings about the recordings that were read."""
 
 from collections.abc import Iterable, Iterator
 from functools import partial
@@ -7,10 +7,9 @@ from typing import Annotated
 
 import typer
 
-from actum.node import SECOND_NS
 from actum.recorder import TakenError, refuse_taken
 from actum.recording import Recording, RecordingError
-from actum_command.commands.terminal import fail, refuse_ending, refuse_unwritable, say
+from actum_command.commands.terminal import fail, failing_on, refuse_unwritable, say
 from actum_model_trainer.samples import select
 
 PersonOption = Annotated[
@@ -25,6 +24,16 @@ PersonOption = Annotated[
 RecordingFile = Annotated[
     Path, typer.Argument(metavar="REC", help="the recording (.mcap)", exists=True, dir_okay=False)
 ]
+AgentOption = Annotated[
+    int | None,
+    typer.Option(
+        min=1,
+        help=(
+            "number of the person who acts, as in the field agent of messages; default: the person nearest to the "
+            "camera"
+        ),
+    ),
+]
 AllOption = Annotated[
     bool,
     typer.Option(
@@ -36,16 +45,12 @@ AllOption = Annotated[
     ),
 ]
 
-LONGEST_LABEL = 200  # characters allowed in the field of a mark
-
 
 def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[Recording]:
     """Open the chosen recordings, and say which of a folder's are not finished; fail where there is none."""
     people = None if person is None else [name.strip() for name in person.split(",")]
-    try:
+    with failing_on(RecordingError):
         recordings = select(files, people, with_excluded, partial(say, style="yellow"))
-    except RecordingError as error:
-        fail(str(error))
     if not recordings:
         of_person = f" of person {person}" if person else ""
         hint = "" if with_excluded else ", or add --all to use recordings marked as excluded"
@@ -56,12 +61,9 @@ def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[R
 
 def refuse_output(output: Path, ending: str = ".mcap") -> None:
     """Fail before long work where no recording can be written, or one lies already, finished or not."""
-    refuse_unwritable(output)
-    refuse_ending(output, ending)
-    try:
+    refuse_unwritable(output, ending)
+    with failing_on(TakenError):
         refuse_taken(output)
-    except TakenError as error:
-        fail(str(error))
 
 
 def tell_unread(recordings: Iterable[Recording]) -> None:
@@ -78,17 +80,3 @@ def unread(recordings: Iterable[Recording]) -> Iterator[str]:
         if recording.skipped:
             kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
             yield f"{recording.path}: skipped {kinds}"
-
-
-def refuse_length(label: str) -> None:
-    """Fail where a label is empty, or too long for a mark."""
-    if not 0 < len(label) <= LONGEST_LABEL:
-        fail(f"the label must have 1 to {LONGEST_LABEL} characters")
-
-
-def in_ns(seconds: float) -> int:
-    """Return a time in nanoseconds, or fail where it is beyond all numbers."""
-    try:
-        return round(seconds * SECOND_NS)
-    except (ValueError, OverflowError):
-        fail(f"{seconds:g} is not a time: give a number of seconds such as 12.3")

@@ -2,19 +2,25 @@
 
 import select
 import sys
+import time
+from collections.abc import Callable, Iterator
 from typing import Annotated, Literal
 
 import typer
 from pydantic import ValidationError
+from rich.markup import escape
 
 from actum import keys
-from actum.messages import MANUAL, Segment
-from actum.runtime import Client
-from actum_command.answers import Answers
+from actum.messages import MANUAL, Action, Event, Message, Segment
+from actum.runtime import Client, Listening
 from actum_command.commands.plain_help import PlainTyper
-from actum_command.commands.router_flags import with_router_flags
+from actum_command.commands.recording_options import AgentOption
+from actum_command.commands.service_flags import with_router_flags
 from actum_command.commands.terminal import connect, console, fail, say, settings
+from actum_command.describing import describe
 
+ANSWER_S = 6.0  # at most 2 s for the classifier's late frames and 2 s for the fusion's late objects, and a margin
+POLL_S = 0.02  # less than a frame's interval
 WAIT_S = 5.0  # how long to wait for a classifier that is starting to subscribe
 
 app = PlainTyper(
@@ -31,16 +37,6 @@ Id = Annotated[
         help=(
             "any name for this action, such as a1; use the same name for start and end, and a new name for each action"
         )
-    ),
-]
-AgentOption = Annotated[
-    int | None,
-    typer.Option(
-        min=1,
-        help=(
-            "number of the person who acts, as in the field agent of messages; default: the person nearest to the "
-            "camera"
-        ),
     ),
 ]
 HandOption = Annotated[str | None, typer.Option(help="the hand that acts, left or right; default: not specified")]
@@ -69,7 +65,7 @@ def start(
     stamp_ns: StampOption = None,
 ) -> None:
     """Mark the start of an action; mark its end with 'actum segment end' and the same SEGMENT_ID."""
-    mark = _mark("start", segment_id, agent, hand, label, stamp_ns)
+    mark = _mark("start", segment_id, agent=agent, hand=hand, label=label, stamp_ns=stamp_ns)
     with connect() as client:
         _put(client, mark)
 
@@ -92,7 +88,7 @@ def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOptio
         while _waits_for_enter(f"press Enter to start action {number + 1}, Ctrl-D to quit "):
             number += 1
             segment_id = f"toggle-{client.run}-{number}"
-            _put(client, _mark("start", segment_id, agent, hand, label))
+            _put(client, _mark("start", segment_id, agent=agent, hand=hand, label=label))
             ended = _waits_for_enter("press Enter to end it ")
             _put(client, _mark("end", segment_id))
             for line in answers.until(segment_id, interrupted=_enter_was_pressed):
@@ -101,28 +97,13 @@ def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOptio
                 return
 
 
-def _mark(
-    kind: Literal["start", "end"],
-    segment_id: str,
-    agent: int | None = None,
-    hand: str | None = None,
-    label: str | None = None,
-    stamp_ns: int | None = None,
-) -> Segment:
-    if hand not in (None, "left", "right"):
-        fail(f"--hand {hand!r} is not a hand: use left or right")
-    fields = {
-        "sensor": settings().sensor,
-        "kind": kind,
-        "segment_id": segment_id,
-        "agent": agent,
-        "hand": hand,
-        "label": label,
-        "stamp_ns": stamp_ns,
-        "origin": MANUAL,
-    }
+def _mark(kind: Literal["start", "end"], segment_id: str, **fields: object) -> Segment:
+    """Return a mark with the fields that are given, or fail where it is none."""
+    if fields.get("hand") not in (None, "left", "right"):
+        fail(f"--hand {fields['hand']!r} is not a hand: use left or right")
+    own = {"sensor": settings().sensor, "kind": kind, "segment_id": segment_id, "origin": MANUAL}
     try:
-        return Segment.model_validate(fields)
+        return Segment.model_validate(own | fields)
     except ValidationError as error:
         fail("; ".join(f"{'.'.join(map(str, e['loc']))}: {e['msg']}" for e in error.errors(include_url=False)))
 
@@ -149,3 +130,47 @@ def _waits_for_enter(prompt: str) -> bool:
         print()
         return False
     return True
+
+
+class Answers:
+    """Waits for the answers to segments; late answers to earlier segments are described when they arrive."""
+
+    def __init__(self, client: Client) -> None:
+        self._events = client.listen(keys.pattern(keys.EVENT, client.sensor))
+        self._actions = client.listen(keys.pattern(keys.ACTION, client.sensor))
+        self._pending: dict[str, Action | None] = {}
+
+    def until(self, segment_id: str, interrupted: Callable[[], bool]) -> Iterator[str]:
+        """Yield lines of console markup until a segment's event has come, for `ANSWER_S`, or until interrupted."""
+        self._pending[segment_id] = None
+        deadline_s = time.monotonic() + ANSWER_S
+        while True:
+            yield from self._new_events()
+            if segment_id not in self._pending:
+                return
+            if time.monotonic() >= deadline_s:
+                break
+            if interrupted():
+                return
+            time.sleep(POLL_S)
+        action = self._pending.pop(segment_id)
+        if action is None:
+            yield f"[yellow]{escape(segment_id)}: no answer within {ANSWER_S:g} s: run 'actum doctor'[/yellow]"
+        else:
+            yield f"{describe(action)}; no event arrived: check that action_fusion runs"
+
+    def _new_events(self) -> Iterator[str]:
+        """Describe the events of pending segments that have arrived, and keep their final actions."""
+        for message in _messages(self._actions):
+            if isinstance(message, Action) and message.final and message.segment_id in self._pending:
+                self._pending[message.segment_id] = message
+        for message in _messages(self._events):
+            if isinstance(message, Event) and message.segment_id in self._pending:
+                del self._pending[message.segment_id]
+                yield describe(message)
+
+
+def _messages(listening: Listening) -> Iterator[Message]:
+    while (received := listening.take()) is not None:
+        if received.message is not None:
+            yield received.message

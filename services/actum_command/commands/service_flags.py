@@ -1,74 +1,82 @@
-"""Options for every setting of the services that a command starts, made from the services' declarations."""
+"""Options made from declared settings: of the router that a command talks to, and of the services that it starts."""
 
 import inspect
-from collections.abc import Callable, Iterable
+import os
+from collections.abc import Callable, Mapping
 from functools import wraps
 from typing import Annotated, Any
 
 import typer
-from pydantic.fields import FieldInfo
 
 from actum.command_line import explained, placeholder
 from actum.settings import ServiceSettings
-from actum_command.search_settings import CLASSIFIER, SEARCH_SETTINGS
-from actum_command.service_settings import BRIDGE, DECLARED, HISTORY, SET_BY_UP, SETTINGS, flag_of, negated_flag_of
+from actum_command.service_settings import SET_BY_UP, SETTINGS, flag_of, negated_flag_of
+
+ROUTER_VARIABLES = {"connect": "ACTUM_CONNECT", "sensor": "ACTUM_SENSOR"}
+"""The settings that say which router and whose keys are meant, with their environment variables."""
+
+Command = Callable[..., None]
+"""A command's function: its parameters are the arguments and options of the command."""
 
 
-def with_service_flags(command: Callable[..., None]) -> Callable[..., None]:
-    """Add to a command an option for each setting of the services that `actum up` starts and that it lacks.
+def with_router_flags(command: Command) -> Command:
+    """Add the router's flags to a command; the command and the processes that it starts read their environment."""
+    flags = {}
+    for name, variable in ROUTER_VARIABLES.items():
+        words: dict[str, Any] = {"help": ServiceSettings.model_fields[name].description, "envvar": variable}
+        flags[name] = Annotated[str | None, typer.Option(flag_of(name), metavar="TEXT", **words)]
 
-    It gets their values as `given`.
+    def with_environment(values: Mapping[str, Any], arguments: Mapping[str, Any]) -> None:
+        os.environ.update({ROUTER_VARIABLES[name]: value for name, value in values.items() if value is not None})
+        command(**arguments)
+
+    return _with_flags(command, flags, with_environment)
+
+
+def with_flags_of(*services: str, names: tuple[str, ...] | None = None) -> Callable[[Command], Command]:
+    """Return what adds to a command an option for each setting of services that it lacks, or only for those of names.
+
+    The command gets the values as `given`. Settings that every service has are left out.
     """
-    return _with_flags(command, (flag for service in DECLARED for flag in _own(service)))
-
-
-def with_bridge_flags(command: Callable[..., None]) -> Callable[..., None]:
-    """Add to a command an option for each setting of the bridge to ROS 2; it gets their values as `given`."""
-    return _with_flags(command, _own(BRIDGE))
-
-
-def with_history_flags(command: Callable[..., None]) -> Callable[..., None]:
-    """Add to a command an option for each setting of the service that keeps events; it gets their values as `given`."""
-    return _with_flags(command, _own(HISTORY))
-
-
-def with_search_flags(command: Callable[..., None]) -> Callable[..., None]:
-    """Add to a command an option for each setting of the search for actions; it gets their values as `given`."""
-    return _with_flags(command, ((CLASSIFIER, name) for name in SEARCH_SETTINGS))
-
-
-def _own(service: str) -> list[tuple[str, str]]:
-    """List a service's settings beside those that all have, each with the service."""
     common = {*ServiceSettings.model_fields, *SET_BY_UP}
-    return [(service, name) for name in SETTINGS[service].model_fields if name not in common]
+
+    def added_to(command: Command) -> Command:
+        without = common | inspect.signature(command).parameters.keys()
+        flags = {
+            name: _flag(name, service)
+            for service in services
+            for name in names or SETTINGS[service].model_fields
+            if name not in without
+        }
+
+        def with_given(values: Mapping[str, Any], arguments: Mapping[str, Any]) -> None:
+            command(**arguments, given={name: value for name, value in values.items() if value not in (None, [])})
+
+        return _with_flags(command, flags, with_given)
+
+    return added_to
 
 
-def _with_flags(command: Callable[..., None], settings: Iterable[tuple[str, str]]) -> Callable[..., None]:
-    """Add to a command an option for each setting, named by service and name, that it lacks."""
-    command_parameters = dict(inspect.signature(command, eval_str=True).parameters)
-    del command_parameters["given"]  # the command gets this one from the flags below
-    flags = {
-        name: _flag(name, SETTINGS[service].model_fields[name], service)
-        for service, name in settings
-        if name not in command_parameters
-    }
+def _flag(name: str, service: str) -> Any:
+    """Return a setting's option for Typer; the service validates its value."""
+    field = SETTINGS[service].model_fields[name]
+    words: dict[str, Any] = {"help": explained(field), "rich_help_panel": f"Settings of {service}"}
+    if not placeholder(field):  # a switch
+        return Annotated[bool | None, typer.Option(f"{flag_of(name)}/{negated_flag_of(name)}", **words)]
+    return Annotated[list[str] | None, typer.Option(flag_of(name), metavar=placeholder(field), **words)]
+
+
+def _with_flags(
+    command: Command, flags: Mapping[str, Any], call: Callable[[Mapping[str, Any], Mapping[str, Any]], None]
+) -> Command:
+    """Return a command with more flags, annotated for Typer; `call` gets their values and the command's arguments."""
+    own = [each for each in inspect.signature(command, eval_str=True).parameters.values() if each.name != "given"]
+    added = [inspect.Parameter(n, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=flags[n]) for n in flags]
 
     @wraps(command)
-    def with_given(**arguments: Any) -> None:
-        given = {name: arguments.pop(name) for name in flags}
-        command(**arguments, given={name: value for name, value in given.items() if value not in (None, [])})
+    def with_flags(**arguments: Any) -> None:
+        call({name: arguments.pop(name) for name in flags}, arguments)
 
-    parameters = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in command_parameters.values()]
-    with_given.__signature__ = inspect.Signature([*parameters, *flags.values()])  # type: ignore[attr-defined]
-    return with_given
-
-
-def _flag(name: str, field: FieldInfo, service: str) -> inspect.Parameter:
-    """Return a setting's option for Typer; the service validates its value."""
-    words: dict[str, Any] = {"help": explained(field), "rich_help_panel": f"Settings of {service}"}
-    is_switch = not placeholder(field)
-    if is_switch:
-        annotation: Any = Annotated[bool | None, typer.Option(f"{flag_of(name)}/{negated_flag_of(name)}", **words)]
-    else:
-        annotation = Annotated[list[str] | None, typer.Option(flag_of(name), metavar=placeholder(field), **words)]
-    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=annotation)
+    named = [parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY) for parameter in own]
+    with_flags.__signature__ = inspect.Signature([*named, *added])  # type: ignore[attr-defined]
+    return with_flags

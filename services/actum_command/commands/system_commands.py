@@ -1,4 +1,4 @@
-"""`actum up` and `actum router`: the whole system, or its router alone."""
+"""`actum up`, `actum router` and `actum ros2`: the whole system, its router alone, or its bridge to ROS 2."""
 
 import logging
 import threading
@@ -10,16 +10,26 @@ import typer
 from pydantic import ValidationError
 
 from actum.installing import adding
-from actum.runtime import serve_router, stop_on_signals
+from actum.runtime import needs_extra, run_bridge, serve_router, stop_on_signals
 from actum.settings import DEFAULT_ENDPOINT, ServiceSettings, SettingsError, complaint, host_and_port
 from actum_command import processes
-from actum_command.commands.service_flags import with_service_flags
-from actum_command.commands.terminal import fail, say, settings
-from actum_command.introduction import how_found, lack_of_model, segments_of, source_of
+from actum_command.commands.service_flags import with_flags_of
+from actum_command.commands.terminal import fail, failing_on, say, settings
 from actum_command.model_in_use import ModelInUse, Reminder, model_in_use
-from actum_command.service_settings import Given
-from actum_command.startup import CHECK_S, chosen_source, refuse_marks, refuse_taken, wait_for_router
+from actum_command.service_settings import BRIDGE, DECLARED, Given, arguments_of
+from actum_command.startup import (
+    CHECK_S,
+    chosen_source,
+    how_found,
+    lack_of_model,
+    refuse_marks,
+    refuse_taken,
+    segments_of,
+    source_of,
+    wait_for_router,
+)
 from actum_command.supervising import Program, Supervisor, UnusableError
+from ros2_bridge.settings import Settings as BridgeSettings
 from sensor_gateway.settings import SourceName
 
 SOURCES = [name for name in get_args(SourceName) if name != "marker-camera"]
@@ -72,17 +82,15 @@ def router(
     logging.basicConfig(level="INFO", format="router: %(message)s")
     here = settings()
     endpoint = listen or (None if config else here.connect)
-    try:
+    with failing_on(SettingsError):
         if link is not None:
             host_and_port(link)
         if endpoint is not None:
             refuse_taken(endpoint)
         serve_router(endpoint, config, stop_on_signals(), credentials, here.health_file, link)
-    except SettingsError as error:
-        fail(str(error))
 
 
-@with_service_flags
+@with_flags_of(*DECLARED)
 def up(
     source: Annotated[
         str | None,
@@ -143,7 +151,11 @@ def up(
             programs += [processes.scene(here)] if marked else []
             say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
             _introduce(chosen, segments, marked)
-            run(here, _with_page(here, programs, given) if page else programs, chosen)
+            if page:
+                programs = processes.with_page(here, programs, given)
+                if programs[-1].name != processes.PAGE:
+                    say(f"no web page: {adding('web-dashboard')}", style="yellow")
+            run(here, programs, chosen)
     except (SettingsError, ValidationError) as error:
         fail(complaint(error))
 
@@ -155,14 +167,6 @@ def _introduce(model: ModelInUse, segments: str, marked: bool) -> None:
         say(f"model: {source_of(model)}")
     if (lack := lack_of_model(model, segments, marked)) is not None:
         say(lack, style="bold yellow")
-
-
-def _with_page(here: ServiceSettings, programs: list[Program], given: Given) -> list[Program]:
-    """Return the programs with the page; print how to install it where it is not."""
-    showing = processes.with_page(here, programs, given)
-    if showing[-1].name != processes.PAGE:
-        say(f"no web page: {adding('web-dashboard')}", style="yellow")
-    return showing
 
 
 def run(here: ServiceSettings, programs: list[Program], model: ModelInUse) -> None:
@@ -178,9 +182,18 @@ def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.E
     """Keep programs running until stopped; fail where one cannot be used as it is set."""
     for program in programs:
         supervisor.start(program)
-    try:
+    with failing_on(UnusableError):
         while not stop.wait(CHECK_S):
             for line in (*supervisor.restart_ended(), *reminder.lines(time.monotonic())):
                 say(line, style="yellow")
-    except UnusableError as error:
-        fail(str(error))
+
+
+@with_flags_of(BRIDGE)
+def ros2(*, given: Given) -> None:
+    """Exchange messages with ROS 2 until Ctrl-C: publish skeletons, objects and events; receive start and end marks.
+
+    The ROS 2 nodes have to use rmw_zenoh and the same router (--connect). ROS 2 need not be installed on this machine.
+    """
+    with needs_extra("ros2"):
+        from ros2_bridge.bridge import Ros2Bridge
+    run_bridge(BridgeSettings, Ros2Bridge, arguments_of(BRIDGE, given))

@@ -1,7 +1,9 @@
 """Functions that all commands share: the console, the settings, a session with the router, and a clear way to fail."""
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryFile
 from typing import NoReturn
@@ -12,6 +14,7 @@ from rich.markup import escape
 from rich.segment import Segment
 
 from actum.atomic_file import write_whole
+from actum.installing import adding
 from actum.runtime import Client, RouterUnreachableError, obstacle
 from actum.settings import ServiceSettings, SettingsError, complaint
 
@@ -55,6 +58,15 @@ def fail(message: str) -> NoReturn:
     raise typer.Exit(1)
 
 
+@contextmanager
+def failing_on(*errors: type[Exception]) -> Iterator[None]:
+    """Return a context that ends the command with the text of an error of these kinds."""
+    try:
+        yield
+    except errors as error:
+        fail(str(error))
+
+
 def connect(wait_s: float = 5.0) -> Client:
     """Open a session with the router, or fail saying why there is none and how to get one."""
     here = settings()
@@ -79,6 +91,12 @@ def connect_whenever() -> Client:
     return connect(wait_s=float("inf"))
 
 
+def refuse_without(module: str, package: str, extra: str) -> None:
+    """Fail where a library is not installed."""
+    if find_spec(module) is None:
+        fail(f"{package} is not installed: {adding(extra)}")
+
+
 def refuse_ending(file: Path, *endings: str) -> None:
     """Fail where the name of a file to write has none of these endings."""
     if file.suffix.lower() not in endings:
@@ -96,8 +114,8 @@ def write_text(file: Path, text: str) -> None:
         fail(f"{file} cannot be written ({error.strerror})")
 
 
-def refuse_unwritable(file: Path) -> None:
-    """Fail before long work where a file could not be written after it; missing folders will be made."""
+def refuse_unwritable(file: Path, *endings: str) -> None:
+    """Fail before long work where a file of these endings could not be written; missing folders will be made."""
     try:
         if file.is_dir():
             fail(f"{file} is a folder: give the name of a file")
@@ -105,3 +123,5 @@ def refuse_unwritable(file: Path) -> None:
             pass
     except OSError as error:
         fail(f"{file} cannot be written ({error.strerror}): give another file")
+    if endings:
+        refuse_ending(file, *endings)

@@ -3,24 +3,28 @@
 import json
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from actum.command_line import from_command_line
 from actum.recording import Recording, RecordingError
 from actum.settings import complaint
-from actum_command.commands.continuous_evaluation import evaluate_continuously
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
-from actum_command.commands.service_flags import with_search_flags
-from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say, write_text
-from actum_command.preset_settings import PresetError, preset_named
-from actum_command.search_settings import segmentation_of
-from actum_command.service_settings import Given, flag_of
+from actum_command.commands.service_flags import with_flags_of
+from actum_command.commands.terminal import console, fail, failing_on, refuse_unwritable, say, write_text
+from actum_command.commands.tune_command import SEARCH_SETTINGS, flags_for
+from actum_command.service_settings import Given, arguments_of, flag_of
 from actum_model_trainer.advice import Contents, advice
+from actum_model_trainer.continuous.continuous_report import continuous_report
+from actum_model_trainer.continuous.scoring import scores_of
+from actum_model_trainer.continuous.watching import NoSpotterError, found_by
+from actum_model_trainer.continuous_cross_validation import found_without_each, models_without
 from actum_model_trainer.cross_validation import leave_one_person_out
-from actum_model_trainer.evaluation import Evaluation, evaluate
+from actum_model_trainer.evaluation import evaluate
 from actum_model_trainer.report import report
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import TrainingError, train_to_spot
@@ -29,7 +33,10 @@ from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 from som_classifier.segmentation import Segmentation
+from som_classifier.settings import Settings
 
+CLASSIFIER = "som_classifier"
+"""The service that has the settings of the search."""
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of recordings")]
 PresetOption = Annotated[
     str,
@@ -64,11 +71,10 @@ def train_command(
 ) -> None:
     """Train a model on labelled recordings, and write it to a file for 'actum up --model'."""
     began_s = time.monotonic()
-    _refuse_place(output)
-    refuse_ending(output, ".npz")
-    chosen_preset = _preset(preset, settings)
+    _refuse_place(output, ".npz")
+    chosen_preset = preset_named(preset, settings or ())
     recordings = chosen(files, person, with_excluded)
-    try:
+    with failing_on(RecordingError, TrainingError, OSError):
         with bars() as progress:
             samples = samples_from(recordings, progress)
         for unusable in samples.unusable:
@@ -77,8 +83,6 @@ def train_command(
         with bars() as progress:
             model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress)
         model.save(output)
-    except (RecordingError, TrainingError, OSError) as error:
-        fail(str(error))
     say(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
         f"{time.monotonic() - began_s:.1f} s, written to {output}"
@@ -88,7 +92,7 @@ def train_command(
         say(sentence, style="yellow")
 
 
-@with_search_flags
+@with_flags_of(CLASSIFIER, names=SEARCH_SETTINGS)
 def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     given: Given,
     files: Annotated[
@@ -134,71 +138,103 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     Name a model file to test that model, or use --leave-one-person-out to learn how well a model works with new people.
     """
     if json_file is not None:
-        _refuse_place(json_file)
-        refuse_ending(json_file, ".json")
+        _refuse_place(json_file, ".json")
     if not by_person and len(files) == 1:
         fail(
             f"a model and at least one recording are needed, but only {files[0]} was given: give both, or use "
             "--leave-one-person-out with recordings alone"
         )
-    try:
+    with failing_on(ModelError):
         model = None if by_person else load_model(files[0])
-    except ModelError as error:
-        fail(str(error))
     if given and not continuous:
         fail(f"{flag_of(next(iter(given)))} works only together with --continuous: add --continuous")
     recordings = chosen(files if by_person else files[1:], person, with_excluded)
-    what = model, recordings, _preset(preset, settings), seed, json_file
+    what = model, recordings, preset_named(preset, settings or ()), seed, json_file
     if continuous:
-        evaluate_continuously(*what, _segmentation(given))
+        _evaluate_continuously(*what, segmentation_of(given))
     else:
         _evaluate_segments(*what)
-
-
-def _segmentation(given: Given) -> Segmentation:
-    try:
-        return segmentation_of(given)
-    except ValueError as error:
-        fail(complaint(error))
 
 
 def _evaluate_segments(
     model: Model | None, recordings: Sequence[Recording], preset: Preset, seed: int, json_file: Path | None
 ) -> None:
-    """Recognise labelled segments by a model, or without one each person's by all others, and tell the scores."""
+    """Recognise labelled segments by a model, or without one each person's by all others, and print the scores."""
     began_s = time.monotonic()
-    try:
-        with bars() as progress:
-            if model is None:
-                result = leave_one_person_out(recordings, preset, seed, progress)
-            else:
-                result = evaluate(model, recordings, progress)
-    except (RecordingError, TrainingError) as error:
-        fail(str(error))
+    with failing_on(RecordingError, TrainingError), bars() as progress:
+        if model is None:
+            result = leave_one_person_out(recordings, preset, seed, progress)
+        else:
+            result = evaluate(model, recordings, progress)
     tell_unread(recordings)
-    _show(result, time.monotonic() - began_s)
-    if json_file is not None:
-        write_text(json_file, json.dumps(result.as_json(), indent=1))
-
-
-def _preset(name: str, settings: list[str] | None) -> Preset:
-    try:
-        return preset_named(name, settings or ())
-    except PresetError as error:
-        fail(str(error))
-
-
-def _show(result: Evaluation, seconds: float) -> None:
     if result.n == 0:
         fail(
             "the given recordings contain no labelled action: record with 'actum record --label', or label the "
             "recordings with 'actum label'"
         )
-    console.print(report(result, seconds))
+    console.print(report(result, time.monotonic() - began_s))
+    if json_file is not None:
+        write_text(json_file, json.dumps(result.as_json(), indent=1))
 
 
-def _refuse_place(file: Path) -> None:
+def _evaluate_continuously(
+    model: Model | None,
+    recordings: Sequence[Recording],
+    preset: Preset,
+    seed: int,
+    json_file: Path | None,
+    segmentation: Segmentation,
+) -> None:
+    """Watch recordings with a model, or without one each person with one of all others, and print the scores."""
+    began_s = time.monotonic()
+    if model is not None and (problem := segmentation.misnamed(model)):
+        fail(problem)
+    if flags := flags_for(segmentation):
+        say(f"with {flags}")
+    with failing_on(RecordingError, TrainingError, NoSpotterError), bars() as progress:
+        if model is None:
+            models = models_without(recordings, preset, seed, progress)
+            found = found_without_each(recordings, models, progress, segmentation)
+        else:
+            found = found_by(model, recordings, progress, segmentation)
+    tell_unread(recordings)
+    if not found.seen:
+        fail("the given recordings contain no skeletons: give recordings of a person")
+    scores = scores_of(found)
+    console.print(continuous_report(scores, time.monotonic() - began_s))
+    if json_file is not None:
+        write_text(json_file, json.dumps(found.as_json() | {"scores": scores.as_json()}, indent=1))
+
+
+def segmentation_of(given: Given) -> Segmentation:
+    """Return what a classifier with these flags finds by itself; others are from the environment or `ACTUM_CONFIG`."""
+    try:
+        settings = from_command_line(Settings, CLASSIFIER, arguments_of(CLASSIFIER, given))
+    except ValueError as error:
+        fail(complaint(error))
+    return replace(settings.segmentation, segments="auto")
+
+
+def preset_named(name: str, settings: Sequence[str]) -> Preset:
+    """Return the preset of a name, changed by the settings, each NAME=VALUE; fail where there is no such preset."""
+    if name not in PRESETS:
+        fail(f"{name!r} is not a preset: use one of {', '.join(PRESETS)}")
+    preset = PRESETS[name]
+    changes = dict(setting.partition("=")[::2] for setting in settings)
+    if changes and not preset.choices:
+        fail(
+            f"preset {name} has no settings: leave out --set, or use --preset {PAPER.name}, which has the settings "
+            f"{', '.join(PAPER.choices)}"
+        )
+    for setting, value in changes.items():
+        if value not in preset.choices.get(setting, ()):
+            known = "; ".join(f"{each}={'|'.join(values)}" for each, values in preset.choices.items())
+            fail(f"{setting}={value} is not a setting of preset {name}: use one or more of {known}")
+    return preset.changed(changes) if changes else preset
+
+
+def _refuse_place(file: Path, ending: str) -> None:
     """Fail before long work where its result could not be written."""
     if not file.parent.is_dir():
         fail(f"{file} cannot be written: the folder {file.parent} does not exist")
-    refuse_unwritable(file)
+    refuse_unwritable(file, ending)

@@ -1,6 +1,10 @@
 """`actum tune`: picks the settings of the search for actions from labelled continuous recordings."""
 
+import json
+import shlex
 import time
+import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -9,13 +13,22 @@ import typer
 from actum.recording import RecordingError
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
-from actum_command.commands.terminal import console, fail, refuse_ending, refuse_unwritable, say, write_text
-from actum_command.search_settings import OtherSettingsError, flags_for, refuse_other_settings, settings_file
+from actum_command.commands.terminal import console, fail, failing_on, refuse_unwritable, say, write_text
+from actum_command.service_settings import flag_of
 from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.tuning.tuning import NothingLabelledError, tuned
 from actum_model_trainer.tuning.tuning_report import tuning_report
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.segmentation import Segmentation
+
+SEARCH_SETTINGS = (
+    "false_alarms_per_min",
+    "shortest_pause_s",
+    "cooldown_s",
+    "enabled_actions",
+    "disabled_actions",
+)
+"""The settings of the search, which the command picks and `actum evaluate --continuous` takes."""
 
 
 def tune(
@@ -60,14 +73,13 @@ def tune(
     if false_alarms_per_min is not None and not 0 < false_alarms_per_min < float("inf"):
         fail(f"--false-alarms-per-min is {false_alarms_per_min:g}; it has to be a number above 0")
     if output is not None:
-        _refuse(output)
-    try:
+        refuse_unwritable(output, ".toml")
+        refuse_other_settings(output)
+    with failing_on(ModelError, RecordingError, NoSpotterError, NothingLabelledError):
         loaded = load_model(model)
         recordings = chosen(files, person, with_excluded)
         with bars() as progress:
             result = tuned(loaded, recordings, false_alarms_per_min, progress)
-    except (ModelError, RecordingError, NoSpotterError, NothingLabelledError) as error:
-        fail(str(error))
     tell_unread(recordings)
     console.print(tuning_report(result, false_alarms_per_min, time.monotonic() - began_s))
     for doubt in result.doubts:
@@ -80,11 +92,51 @@ def tune(
         say(f"written to {output}: set ACTUM_CONFIG={output} to use it")
 
 
-def _refuse(output: Path) -> None:
-    """Fail before long work where its result could not be written."""
-    refuse_unwritable(output)
-    refuse_ending(output, ".toml")
+def flags_for(segmentation: Segmentation) -> str:
+    """Write the settings that are not as by default as flags for a shell; "" where all are."""
+    flags = []
+    for name, value in _set(segmentation):
+        parts = [f"{action}={seconds:g}" for action, seconds in value.items()] if isinstance(value, dict) else value
+        flags.append(f"{flag_of(name)}={','.join(parts) if isinstance(parts, list) else parts}")
+    return shlex.join(flags)
+
+
+def settings_file(segmentation: Segmentation, origin: str) -> str:
+    """Write the settings that are not as by default as a file for `ACTUM_CONFIG`; its first line says their origin."""
+    lines = [f"{name} = {_as_toml(value)}" for name, value in _set(segmentation)]
+    return "\n".join([f"# {origin}", *(lines or ["# the model does best as it is: nothing is to be set"]), ""])
+
+
+def refuse_other_settings(file: Path) -> None:
+    """Fail where a file that is to be written holds what is none of these settings."""
     try:
-        refuse_other_settings(output)
-    except (OtherSettingsError, OSError) as error:
+        held = tomllib.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError):
+        fail(f"{file} already exists and is not a TOML file: give another file")
+    except OSError as error:
         fail(str(error))
+    if others := sorted(held.keys() - set(SEARCH_SETTINGS)):
+        fail(
+            f"{file} also sets {', '.join(others)}, which overwriting the file would delete: write to another file, "
+            f"then copy the new lines into {file}"
+        )
+
+
+def _set(segmentation: Segmentation) -> Iterator[tuple[str, float | dict[str, float] | list[str]]]:
+    """Yield name and value of each setting that is not as by default."""
+    options = segmentation.options
+    values = (
+        options.false_alarms_per_min,
+        options.shortest_pause_s,
+        dict(options.cooldown_s),
+        sorted(segmentation.enabled),
+        sorted(options.disabled),
+    )
+    yield from ((name, value) for name, value in zip(SEARCH_SETTINGS, values, strict=True) if value)
+
+
+def _as_toml(value: float | dict[str, float] | list[str]) -> str:
+    """Write a value in TOML, whose strings are JSON's."""
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{json.dumps(name)} = {seconds}' for name, seconds in value.items())}}}"
+    return json.dumps(value, ensure_ascii=False)

@@ -11,9 +11,8 @@ import typer
 from actum.runtime import stop_on_signals
 from actum.runtime.stopping import wait_for
 from actum_command.commands.recording_options import refuse_output
-from actum_command.commands.terminal import fail, say
-from actum_command.commands.viewed_streams import RecordingArgument, refuse_without, streams_of, tell_shown
-from actum_command.viewers.showing import Showing
+from actum_command.commands.terminal import failing_on, refuse_without, say
+from actum_command.commands.viewed_streams import RecordingArgument, Showing, streams_of, tell_shown
 
 if TYPE_CHECKING:
     from actum_command.viewers.rerun_program import RerunStream
@@ -49,16 +48,17 @@ def view(
     from actum_command.viewers.rerun_program import ViewerError
 
     stop = stop_on_signals()
-    try:
-        with streams_of(recording) as streams, _opened(streams.sensors, output, web, port, web_port, stop) as rerun:
-            showing = Showing(rerun.show)
-            streams.give(showing, stop)
-            tell_shown(showing, f"written to {output}" if output else "sent to Rerun")
-            if recording is not None and output is None:
-                say("Ctrl-C stops")
-                wait_for(stop)
-    except ViewerError as error:
-        fail(str(error))
+    with (
+        failing_on(ViewerError),
+        streams_of(recording) as streams,
+        _opened(streams.sensors, output, web, port, web_port, stop) as rerun,
+    ):
+        showing = Showing(rerun.show)
+        streams.give(showing, stop)
+        tell_shown(showing, f"written to {output}" if output else "sent to Rerun")
+        if recording is not None and output is None:
+            say("Ctrl-C stops")
+            wait_for(stop)
 
 
 @contextmanager

@@ -1,5 +1,7 @@
 """`actum watch`: what happens on a sensor's keys, one line per message."""
 
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -12,10 +14,11 @@ from actum.recording import Recording, RecordingError
 from actum.recording_files import recording_files
 from actum.runtime import Client, Received
 from actum_command.commands.recording_options import unread
-from actum_command.commands.terminal import connect, console, errors, fail
-from actum_command.message_lines import WATCHABLE, json_line, line, received_on
-from actum_command.ongoing_lines import OngoingLines
+from actum_command.commands.terminal import connect, console, errors, fail, failing_on
+from actum_command.describing import OngoingLines, json_line, line
 
+WATCHABLE = {topic.leaf.removesuffix("/{}"): topic for topic in keys.TOPICS}
+"""All topics, by the name that a user gives them."""
 BY_DEFAULT = [keys.EVENT]
 
 
@@ -59,10 +62,19 @@ def watch(
             if console.is_terminal and not as_json and {keys.EVENT, keys.ACTION} & {*wanted}:
                 _show_above_what_goes_on(client, wanted)
             else:
-                for received in received_on(client, wanted):
+                for received in _received_on(client, wanted):
                     _print(received, as_json)
         except KeyboardInterrupt:
             return
+
+
+def _received_on(client: Client, topics: list[keys.Topic]) -> Iterator[Received]:
+    """Yield the messages that arrive on the topics, from now on."""
+    pattern = keys.pattern(topics[0], client.sensor) if len(topics) == 1 else keys.everything(client.sensor)
+    for received in client.listen(pattern):
+        with suppress(keys.InvalidKeyError):  # a key of somebody else's below the sensor's
+            if keys.parse(received.key).topic in topics:
+                yield received
 
 
 def _print(received: Received, as_json: bool) -> None:
@@ -79,14 +91,12 @@ def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -
         _remark(remark)
     if not found.paths:
         fail(f"there are no recordings in {', '.join(map(str, named))}: give *.mcap files, or their folders")
-    try:
+    with failing_on(RecordingError):
         for recording in map(Recording, found.paths):
             for message in recording.messages(wanted):
                 _print(Received(keys.key_of(message), message, None, 0), as_json)
             for line_ in unread([recording]):
                 _remark(line_)
-    except RecordingError as error:
-        fail(str(error))
 
 
 def _remark(text: str) -> None:
@@ -99,6 +109,6 @@ def _show_above_what_goes_on(client: Client, wanted: list[keys.Topic]) -> None:
     ongoing = OngoingLines()
     client.follow(keys.pattern(keys.ACTION, client.sensor), lambda received: ongoing.take(received.message))
     with Live(ongoing, console=console, transient=True):
-        for received in received_on(client, wanted):
+        for received in _received_on(client, wanted):
             if not isinstance(received.message, Action) or received.message.final:
                 console.print(line(received), soft_wrap=True)

@@ -72,7 +72,11 @@ class EventFiles:
             self.finish()
         elif now_ns - self._stored_ns >= STORED_NS:
             self._stored_ns = now_ns
-            self._store(self._open)
+            try:
+                self._open.store()
+            except OSError:
+                self._abandon()
+                raise
 
     def finish(self) -> None:
         """Finish the open file if there is one, and delete the oldest beyond what is kept.
@@ -102,13 +106,6 @@ class EventFiles:
                     file.unlink()
             except (RecordingError, FileExistsError) as error:
                 yield str(error)
-
-    def _store(self, recorder: StoredRecorder) -> None:
-        try:
-            recorder.store()
-        except OSError:
-            self._abandon()
-            raise
 
     def _abandon(self) -> None:
         """Leave the open file unfinished: the next message begins another one, and the next start finishes this."""

@@ -1,13 +1,17 @@
 """The service `event_recorder`: stores marks, final actions and events as they come."""
 
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
 
-from actum import keys
+from actum import keys, steady_clock
 from actum.messages import Action, Event, Message, Segment
 from actum.node import Counters, Tick
+from actum.runtime import run
 from actum.states import State
 from actum_command.history.event_files import EventFiles
+from actum_command.history.settings import Settings
 from actum_examples.unstamped_marks import Placed, UnstampedMarks
 
 
@@ -31,8 +35,22 @@ class EventRecorder:
     def handle(self, message: Message | Tick) -> list[Message]:
         """Store one message, or do on a tick what has become due; nothing is put."""
         try:
-            self._recover()
-            self._take(message)
+            if not self._recovered:  # what a killed process has left: this instance has its place now
+                self._recovered = True
+                for problem in self._files.recover():
+                    self.counters.reject("unreadable_history", problem)
+            match message:
+                case Tick():
+                    self._tick(message.monotonic_ns)
+                case Segment():
+                    if message.stamp_ns is not None:
+                        self._write(message)
+                    self._place(self._marks.take(message, self._now_ns))
+                case Action(final=True):
+                    self._write(message)
+                    self._place(self._marks.answer(message, self._now_ns))
+                case Event():
+                    self._write(message)
         except OSError as error:
             self._tell(error)
         return []
@@ -45,27 +63,6 @@ class EventRecorder:
         """
         self._place(self._marks.close())
         self._files.finish()
-
-    def _recover(self) -> None:
-        """Finish what a killed process has left, once this instance has its place and before it writes anything."""
-        if not self._recovered:
-            self._recovered = True
-            for problem in self._files.recover():
-                self.counters.reject("unreadable_history", problem)
-
-    def _take(self, message: Message | Tick) -> None:
-        match message:
-            case Tick():
-                self._tick(message.monotonic_ns)
-            case Segment():
-                if message.stamp_ns is not None:
-                    self._write(message)
-                self._place(self._marks.take(message, self._now_ns))
-            case Action(final=True):
-                self._write(message)
-                self._place(self._marks.answer(message, self._now_ns))
-            case Event():
-                self._write(message)
 
     def _tick(self, now_ns: int) -> None:
         self._now_ns = now_ns
@@ -95,3 +92,18 @@ class EventRecorder:
         """Count what could not be written, and say so in the state."""
         self.counters.reject("unwritable_history", f"{error.strerror} ({error.filename or 'the disk'})")
         self.counters.state = f"history not written: {error.strerror}; it tries again with each message"
+
+
+def keep_events(folder: Path, arguments: Sequence[str]) -> None:
+    """Store events in a folder until SIGTERM or SIGINT, and finish the file that is open then."""
+    with ExitStack() as ending:
+
+        def build(settings: Settings) -> EventRecorder:
+            if folder.suffix == ".mcap" or folder.is_file():
+                raise ValueError(f"{folder} looks like a file, but --events writes several files: give a folder")
+            files = EventFiles(folder, settings.sensor, settings)
+            recorder = EventRecorder(files, steady_clock.now_ns)
+            ending.callback(recorder.close)
+            return recorder
+
+        run(Settings, build, arguments)

@@ -19,14 +19,13 @@ from foxglove.messages import (
 
 from actum import keys
 from actum.messages import Action, Event, Image, Message, Objects, Segment, Skeleton, Truth
+from actum_command.viewers.contents import PIXEL_BYTES, Presence, log_line, misfit
 from actum_command.viewers.foxglove_scene import deleted, of_image, of_object, person, thing, time_of, z_up
-from actum_command.viewers.in_words import log_line, misfit
-from actum_command.viewers.presence import Presence
 
 TRANSFORMS = "/tf"
 """The topic of all frames."""
-RAW_ENCODINGS = {"bgr8": ("bgr8", 3), "depth16_mm": ("16UC1", 2)}
-"""Foxglove's name, and the bytes of a pixel, of the formats that are not compressed."""
+RAW_ENCODINGS = {"bgr8": "bgr8", "depth16_mm": "16UC1"}
+"""Foxglove's names of the formats that are not compressed."""
 DISTORTIONS = {0: "plumb_bob", 4: "plumb_bob", 5: "plumb_bob", 8: "rational_polynomial"}
 """Foxglove's name for OpenCV's distortion of so many numbers; it has none for more."""
 PLUMB_BOB = 5
@@ -107,7 +106,6 @@ def _image(topic: str, image: Image) -> Iterator[Put]:
     if image.format == "jpeg":
         yield Put(topic, CompressedImage(timestamp=time, frame_id=frame, data=image.data, format="jpeg"))
         return
-    encoding, pixel_bytes = RAW_ENCODINGS[image.format]
     yield Put(
         topic,
         RawImage(
@@ -115,8 +113,8 @@ def _image(topic: str, image: Image) -> Iterator[Put]:
             frame_id=frame,
             width=image.width,
             height=image.height,
-            encoding=encoding,
-            step=pixel_bytes * image.width,
+            encoding=RAW_ENCODINGS[image.format],
+            step=PIXEL_BYTES[image.format] * image.width,
             data=image.data,
         ),
     )
@@ -143,6 +141,7 @@ def _calibration(image: Image, frame: str) -> CameraCalibration:
 def _line(message: Message) -> Iterator[Put]:
     line = log_line(message)
     if line is not None:
-        level = LogLevel.Warning if isinstance(message, Image) or not message.valid else LogLevel.Info
-        log = Log(timestamp=time_of(message), level=level, message=line, name=topic_of(message))
+        text, warns = line
+        level = LogLevel.Warning if warns else LogLevel.Info
+        log = Log(timestamp=time_of(message), level=level, message=text, name=topic_of(message))
         yield Put(below(message.sensor, "log"), log)

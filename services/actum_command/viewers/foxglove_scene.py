@@ -23,7 +23,7 @@ from foxglove.messages import (
 from actum.geometry import quaternion_xyzw, untilted_from_camera
 from actum.messages import Agent, Image, Message, Objects, Point, Skeleton, TrackedObject
 from actum.node import SECOND_NS
-from actum_command.viewers.figure import AXIS_M, BONE_M, JOINT_M, TRUNK, Rgb, figure
+from actum_command.viewers.contents import AXIS_M, BONE_M, JOINT_M, TRUNK, Rgb, figure
 
 LEVEL_CAMERA = (0.0, -1.0, 0.0)
 """Where up is in the frame of a camera that does not say it."""

@@ -3,7 +3,7 @@
 import json
 import logging
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -12,11 +12,12 @@ import foxglove
 from foxglove.messages import FrameTransforms
 from pydantic_core import to_json
 
+from actum import schemas
 from actum.atomic_file import created
+from actum.codec import schema_name
 from actum.messages import Message
 from actum.recorder import METADATA
 from actum_command.viewers.foxglove_messages import CONTENTS, TRANSFORMS, FoxgloveMessages, below
-from actum_command.viewers.foxglove_schemas import foxglove_schema
 from actum_command.viewers.foxglove_server import Channel, FoxgloveServer
 from web_dashboard.admission import FORBIDDEN, MISDIRECTED, Rule
 from web_dashboard.server import PageServer, socket_at
@@ -27,6 +28,10 @@ ADVICE = {FORBIDDEN: "use --origin to admit it", MISDIRECTED: "open the printed 
 """What to do where somebody is refused wrongly."""
 Log = Callable[[bytes, int], object]
 """Puts a payload with its time (ns) on a channel."""
+Schema = dict[str, Any]
+"""A JSON Schema."""
+KEPT = ("title", "description", "type")
+"""What is taken over of each part as it is."""
 
 
 class FoxgloveStream:
@@ -49,7 +54,11 @@ class FoxgloveStream:
         """Log one message."""
         for put in self._messages.of(message):
             put_on = self._channel(put.topic, type(put.content))
-            put_on(_as_json(message) if put.content is message else put.content.encode(), message.stamp_ns)
+            if put.content is message:  # as `actum watch --json` writes it: Foxglove reads URL-safe base64, too
+                payload = to_json(message.model_dump(), bytes_mode="base64", inf_nan_mode="null")
+            else:
+                payload = put.content.encode()
+            put_on(payload, message.stamp_ns)
 
     def _channel(self, topic: str, kind: type) -> Log:
         """Return the channel of a topic: one of Foxglove's own kinds, or of JSON with the schema of our message."""
@@ -64,11 +73,6 @@ def _described(topic: str, kind: Any) -> Channel:
         return Channel(topic, "json", schema["title"], "jsonschema", json.dumps(schema).encode())
     own = kind.get_schema()
     return Channel(topic, own.encoding, own.name, own.encoding, own.data)
-
-
-def _as_json(message: Message) -> bytes:
-    """Write a message as `actum watch --json` does: bytes as URL-safe base64, which Foxglove reads, too."""
-    return to_json(message.model_dump(), bytes_mode="base64", inf_nan_mode="null")
 
 
 class ServerError(RuntimeError):
@@ -120,10 +124,43 @@ def written(path: Path, metadata: dict[str, str]) -> Iterator[FoxgloveStream]:
     path.parent.mkdir(parents=True, exist_ok=True)
     with created(path) as file, foxglove.open_mcap(file, context=context) as writer:
         writer.write_metadata(METADATA, metadata)
-        yield FoxgloveStream(lambda channel: _in_file(channel, context))
+
+        def opened(channel: Channel) -> Log:
+            schema = foxglove.Schema(name=channel.schema_name, encoding=channel.schema_encoding, data=channel.schema)
+            own = foxglove.Channel(channel.topic, schema=schema, message_encoding=channel.encoding, context=context)
+            return lambda payload, time_ns: own.log(payload, log_time=time_ns)
+
+        yield FoxgloveStream(opened)
 
 
-def _in_file(channel: Channel, context: foxglove.Context) -> Log:
-    schema = foxglove.Schema(name=channel.schema_name, encoding=channel.schema_encoding, data=channel.schema)
-    written_to = foxglove.Channel(channel.topic, schema=schema, message_encoding=channel.encoding, context=context)
-    return lambda payload, time_ns: written_to.log(payload, log_time=time_ns)
+def foxglove_schema(kind: type[Message]) -> Schema:
+    """Return the JSON Schema of a kind of message, under its name on the wire, in the subset that Foxglove reads.
+
+    Foxglove's reader (`parseJsonSchema` in its open sources) takes a plain type for each field: no `$ref`, no `anyOf`,
+    no object without `properties`. What may be null is declared as what it is otherwise; values are not checked.
+    """
+    given = json.loads(schemas.committed(schemas.file_name(kind)))
+    return {**_plain(given, given.get("$defs", {})), "title": schema_name(kind)}
+
+
+def _plain(part: Schema, definitions: Mapping[str, Schema]) -> Schema:
+    """Return a part with references put in, alternatives to null chosen, and without limits."""
+    while "$ref" in part or "anyOf" in part:
+        part = _meant(part, definitions)
+    plain = {key: part[key] for key in KEPT if key in part}
+    if part["type"] == "object":
+        plain["properties"] = {name: _plain(field, definitions) for name, field in part.get("properties", {}).items()}
+    elif part["type"] == "array":
+        plain["items"] = _plain(part["items"], definitions)
+    elif part.get("format") == "binary":
+        plain["contentEncoding"] = "base64"
+    return plain
+
+
+def _meant(part: Schema, definitions: Mapping[str, Schema]) -> Schema:
+    """Return what a part refers to, or which alternative to null it names, under the part's own title."""
+    own = {key: value for key, value in part.items() if key not in ("$ref", "anyOf")}
+    if "$ref" in part:
+        return {**definitions[part["$ref"].rpartition("/")[2]], **own}
+    [meant] = [alternative for alternative in part["anyOf"] if alternative.get("type") != "null"]
+    return {**meant, **own}

@@ -10,9 +10,7 @@ import rerun.blueprint as rrb
 
 from actum import keys
 from actum.messages import Action, Agent, Image, Message, Objects, Skeleton, TrackedObject
-from actum_command.viewers.figure import AXIS_M, BONE_M, JOINT_M, Rgb, figure
-from actum_command.viewers.in_words import log_line, misfit
-from actum_command.viewers.presence import Presence
+from actum_command.viewers.contents import AXIS_M, BONE_M, JOINT_M, Presence, Rgb, figure, log_line, misfit
 
 TIMELINE = "capture"
 """The timeline on which everything stands: a message's `stamp_ns`, from 1970 on."""
@@ -48,13 +46,11 @@ class RerunEntries:
 
     def of(self, message: Message) -> list[Entry]:
         """Return what is shown of one message; nothing of postures, which are skeletons turned, and of status."""
-        return [*self._sensor(message.sensor), *self._content(message), *_line(message)]
-
-    def _sensor(self, sensor: str) -> Iterator[Entry]:
-        """Say once of a sensor how its camera frame lies: x right, y down, z forward."""
-        if sensor not in self._sensors:
-            self._sensors.add(sensor)
-            yield Entry(sensor, [rr.ViewCoordinates.RDF], static=True)
+        entries = [*self._content(message), *_line(message)]
+        if message.sensor not in self._sensors:  # how the camera frame lies: x right, y down, z forward
+            self._sensors.add(message.sensor)
+            entries.insert(0, Entry(message.sensor, [rr.ViewCoordinates.RDF], static=True))
+        return entries
 
     def _content(self, message: Message) -> Iterator[Entry]:
         match message:
@@ -162,6 +158,7 @@ def _courses(path: str, action: Action) -> Iterator[Entry]:
 def _line(message: Message) -> Iterator[Entry]:
     line = log_line(message)
     if line is not None:
-        level = rr.TextLogLevel.WARN if isinstance(message, Image) or not message.valid else rr.TextLogLevel.INFO
+        text, warns = line
+        level = rr.TextLogLevel.WARN if warns else rr.TextLogLevel.INFO
         kind = message.SCHEMA.rpartition(".")[2]
-        yield Entry(f"{message.sensor}/log/{kind}", [rr.TextLog(line, level=level)])
+        yield Entry(f"{message.sensor}/log/{kind}", [rr.TextLog(text, level=level)])

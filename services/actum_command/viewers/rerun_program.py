@@ -20,6 +20,7 @@ import rerun as rr
 import rerun_cli
 
 from actum.messages import Message
+from actum_command.supervising import stop_processes
 from actum_command.viewers.rerun_entries import TIMELINE, RerunEntries, layout
 
 LOCAL = "127.0.0.1"
@@ -28,8 +29,6 @@ START_S = 30.0
 """How long (s) the program may take to listen: it is read from disk, 150 MB."""
 POLL_S = 0.05
 """Interval (s) at which it is looked for."""
-STOP_S = 5.0
-"""How long (s) it may take to end."""
 FLUSH_S = 10.0
 """How long (s) what was sent last may take to arrive."""
 QUIET = {"CI": "1", "RUST_LOG": "warn"}
@@ -110,7 +109,7 @@ def _running(address: str, port: int, web_port: int | None) -> Iterator["subproc
         _wait_until_listening(process, address, ports)
         yield process
     finally:
-        _stop(process)
+        stop_processes([process])
 
 
 def own_address() -> str:
@@ -163,12 +162,3 @@ def _wait_until_listening(process: "subprocess.Popen[bytes]", address: str, port
 def _tell_end(process: subprocess.Popen[bytes], ended: threading.Event) -> None:
     process.wait()
     ended.set()
-
-
-def _stop(process: subprocess.Popen[bytes]) -> None:
-    process.terminate()
-    try:
-        process.wait(STOP_S)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()

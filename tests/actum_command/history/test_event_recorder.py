@@ -25,6 +25,10 @@ def event(segment_id: str, start_ns: int, end_ns: int) -> Event:
     return events.event(segment_id, "pushed the cup").model_copy(update=stamps)
 
 
+def full(*_: object) -> None:
+    raise OSError(28, "No space left on device")
+
+
 class History:
     """A recorder in a folder, whose clocks a test sets."""
 
@@ -45,6 +49,14 @@ class History:
     @property
     def names(self) -> list[str]:
         return [file.name for file in sorted(self.folder.iterdir())]
+
+    @property
+    def numbers(self) -> list[str]:
+        return [name.split("-")[2] for name in self.names]
+
+    def said(self) -> list[str]:
+        """The segments that are stored, in order."""
+        return [message.segment_id for message in self.stored()]  # type: ignore[attr-defined]
 
     def stored(self) -> list[Message]:
         return [message for name in self.names for message in Recording(self.folder / name).messages()]
@@ -128,9 +140,6 @@ def test_two_sensors_may_have_segments_of_one_name(history: History) -> None:
 
 
 def test_marks_that_cannot_be_stored_are_counted_one_by_one(history: History, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
     history.take(mark("start"), mark("end"))
     monkeypatch.setattr("actum.recorder.Recorder.write", full)
     history.take(action(11, 31))
@@ -156,7 +165,7 @@ def test_a_file_is_finished_by_age(history: History) -> None:
     history.tick(0.2 * 3600)
     history.take(event("b", 3, 4))
     history.tick(1.0)
-    assert [name.split("-")[2] for name in history.names] == ["000001", "000002"]
+    assert history.numbers == ["000001", "000002"]
     assert [name.endswith(".part") for name in history.names] == [False, True]
     assert 24 * 3600 * SECOND_NS == 24 * HOUR_NS
 
@@ -169,10 +178,10 @@ def test_files_are_finished_by_size_and_the_oldest_make_room(tmp_path: Path) -> 
     history.tick()
     finished = history.recorder.counters.counts["files"]
     assert finished > 4
-    assert [name.split("-")[2] for name in history.names] == [f"{n:06d}" for n in range(finished - 2, finished + 1)]
+    assert history.numbers == [f"{n:06d}" for n in range(finished - 2, finished + 1)]
     assert history.recorder.counters.counts["deleted"] == finished - 3
     assert all(file.stat().st_size < 100_000 for file in tmp_path.iterdir())
-    newest = [message.segment_id for message in history.stored()]  # type: ignore[attr-defined]
+    newest = history.said()
     assert newest == [f"s{number}" for number in range(600 - len(newest), 600)], "in order, up to the last"
 
 
@@ -190,7 +199,7 @@ def test_names_stay_in_order_where_the_clock_is_set_back(history: History) -> No
     history.recorder._received_ns = lambda: START_NS - HOUR_NS
     history.take(event("b", 3, 4))
     history.recorder.close()
-    assert [message.segment_id for message in history.stored()] == ["a", "b"]  # type: ignore[attr-defined]
+    assert history.said() == ["a", "b"]
 
 
 def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> None:
@@ -203,9 +212,9 @@ def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> N
     part.write_bytes(whole[:-100])  # a power cut tears the last message
     after = History(tmp_path)
     assert [file.suffix for file in tmp_path.iterdir()] == [".mcap"]
-    assert [m.segment_id for m in after.stored()] == [f"s{number}" for number in range(19)]  # type: ignore[attr-defined]
+    assert after.said() == [f"s{number}" for number in range(19)]
     after.take(event("later", 50, 51))
-    assert [name.split("-")[2] for name in after.names] == ["000001", "000002"]
+    assert after.numbers == ["000001", "000002"]
     after.recorder.close()
 
 
@@ -218,7 +227,7 @@ def test_what_another_process_is_writing_is_left_to_it(tmp_path: Path) -> None:
     other.take(event("its too", 5, 6))
     for each in (other, after):
         each.recorder.close()
-    assert [m.segment_id for m in after.stored()] == ["its", "its too", "ours"]  # type: ignore[attr-defined]
+    assert after.said() == ["its", "its too", "ours"]
 
 
 def test_what_is_recovered_is_what_was_left_and_not_what_is_being_written(tmp_path: Path) -> None:
@@ -238,7 +247,7 @@ def test_what_cannot_be_read_is_left_and_counted(tmp_path: Path) -> None:
     history = History(tmp_path)
     assert history.recorder.counters.rejects == {"unreadable_history": 1}
     history.take(event("a", 1, 2))
-    assert [name.split("-")[2] for name in history.names] == ["000003", "000004"]
+    assert history.numbers == ["000003", "000004"]
     history.recorder.close()
 
 
@@ -255,9 +264,6 @@ def test_other_sensors_and_other_files_are_left_alone(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_is_told_and_survived(history: History, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
     history.take(event("a", 1, 2))
     with monkeypatch.context() as there:
         there.setattr("actum.recorder.Recorder.write", full)
@@ -267,4 +273,4 @@ def test_a_full_disk_is_told_and_survived(history: History, monkeypatch: pytest.
     history.take(event("b", 5, 6))
     assert history.recorder.counters.state == "running"
     history.recorder.close()
-    assert [message.segment_id for message in history.stored()] == ["a", "b"]  # type: ignore[attr-defined]
+    assert history.said() == ["a", "b"]
