@@ -21,6 +21,7 @@ from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.settings import Settings
 from som_classifier.spotting.search import Search
 from som_classifier.spotting.spotted import Ongoing, SpottedSegment
+from som_classifier.streams import Stream
 from som_classifier.watched_model import WatchedModel
 
 POLL_TICKS = 5
@@ -131,7 +132,7 @@ class SomClassifier:
         self._publish_maps, self._segmentation = settings.publish_maps, settings.segmentation
         if self._model is not None:
             self.counters.state = self._segmentation.state(self._model)
-            self._segmenter.adjust(self._segmentation.plan(self._model))
+            self._segmenter.streams.adjust(self._segmentation.plan(self._model))
 
     def _describe_maps(self, _request: NoFields) -> MapDescription:
         """Tell what the units of the model's maps stand for: a body for each posture, an action for each place."""
@@ -143,34 +144,35 @@ class SomClassifier:
     def _use(self, model: Model) -> None:
         self._model, self.counters.state = model, self._segmentation.state(model)
         self.counters.details["model"] = model.id
-        self._segmenter.use(lambda: model.encoder().encode, self._segmentation.plan(model))
+        self._segmenter.streams.use(lambda: model.encoder().encode, self._segmentation.plan(model))
 
     def _posture(self, posture: Posture) -> Iterator[Message]:
         frame, closed = self._segmenter.posture(posture)
-        if frame is not None:
+        stream = None if frame is None else self._segmenter.streams.of(posture.agent)
+        if stream is not None:
             for segment in self._segmenter.open_at(posture.agent, posture.stamp_ns):
-                yield from self._partial(segment, posture)
+                yield from self._partial(segment, stream, posture)
         self._session = self._session or posture.session_id
         for answer in closed:  # of the session before, where this posture begins another
             yield self._final(answer)
         self._session = posture.session_id
-        search = self._segmenter.search_of(posture.agent)
-        if frame is not None and search is not None:
-            spotted = search.step(frame)
+        if frame is not None and stream is not None:
+            spotted = stream.search.step(frame)
             for found in spotted.segments:
-                yield from self._found(found, search, posture.agent)
+                yield from self._found(found, stream, posture.agent)
             if spotted.ongoing is not None:
-                yield from self._ongoing(spotted.ongoing, search, posture)
+                yield from self._ongoing(spotted.ongoing, stream, posture)
 
-    def _partial(self, segment: OpenSegment, posture: Posture) -> Iterator[Action]:
-        frames = self._segmenter.frames_of(segment)
+    def _partial(self, segment: OpenSegment, stream: Stream, posture: Posture) -> Iterator[Action]:
+        frames = stream.between(segment.start_ns or 0, posture.stamp_ns)
         recognition = self._recognise(frames, complete=False)
-        if recognition is not None and segment.start_ns is not None:
+        if recognition is not None:
             yield partial_action(segment, recognition, frames, posture)
 
-    def _found(self, found: SpottedSegment, search: Search, agent: int) -> Iterator[Message]:
+    def _found(self, found: SpottedSegment, stream: Stream, agent: int) -> Iterator[Message]:
         """Mark and answer a segment that was found, unless it is not to be told; count what becomes of it."""
-        closed = self._segmenter.cut(OpenSegment(search.next_id, found.start_ns, agent, None, None, found.end_ns))
+        search = stream.search
+        closed = stream.cut(OpenSegment(search.next_id, found.start_ns, agent, end_ns=found.end_ns))
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
         fate = self._fate(closed, recognition, search)
         self.counters.counts.update(["found", fate])
@@ -194,11 +196,12 @@ class SomClassifier:
             return "marked"
         return search.admission.admit(recognition.label, closed.start_ns, closed.end_ns) or "told"
 
-    def _ongoing(self, ongoing: Ongoing, search: Search, posture: Posture) -> Iterator[Action]:
+    def _ongoing(self, ongoing: Ongoing, stream: Stream, posture: Posture) -> Iterator[Action]:
         """Say what seems to be going on, unless it is marked or would not be told."""
-        bounds = posture.agent, ongoing.start_ns, posture.stamp_ns
-        if not self._segmenter.is_marked(*bounds) and not search.admission.hindrance(ongoing.label, ongoing.start_ns):
-            yield ongoing_action(search.next_id, ongoing, self._segmenter.frames_between(*bounds), posture)
+        search, bounds = stream.search, (ongoing.start_ns, posture.stamp_ns)
+        hindrance = search.admission.hindrance(ongoing.label, ongoing.start_ns)
+        if hindrance is None and not self._segmenter.is_marked(posture.agent, *bounds):
+            yield ongoing_action(search.next_id, ongoing, stream.between(*bounds), posture)
 
     def _recognise(self, frames: list[Frame], complete: bool) -> Recognition | None:
         usable = [frame for frame in frames if frame.valid]

@@ -51,7 +51,7 @@ METADATA = PyramidSpottingMetadata(
 def encoded_live(model: Model, of: Scene, lost: frozenset[int] = frozenset()) -> list[Frame]:
     """A scene's frames as the classifier has them; some never come."""
     segmenter = Segmenter(Counters())
-    segmenter.use(lambda: model.encoder().encode)
+    segmenter.streams.use(lambda: model.encoder().encode)
     kept = [each for i, each in enumerate(of.skeletons()) if i not in lost]
     return [frame for each in postures(kept) if (frame := segmenter.posture(each)[0]) is not None]
 

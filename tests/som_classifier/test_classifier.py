@@ -23,6 +23,7 @@ from som_classifier.model import Model
 from som_classifier.node import POLL_TICKS, SomClassifier
 from som_classifier.presets import Preset
 from som_classifier.pyramid_model import PyramidModel
+from som_classifier.spotting.search import NO_SEARCH, Search
 from som_classifier.streams import Stream
 from wire import Wire, without_seq
 
@@ -133,8 +134,8 @@ def test_maps_and_trace_come_with_final_answers_where_asked_for(preset: Preset) 
     assert all(action.maps is action.trace is None for action in always(preset))
 
 
-def frames_of(model: Model, postures: Iterable[Posture]) -> list[Frame]:
-    stream = Stream(model.encoder().encode)
+def frames_of(model: Model, postures: Sequence[Posture]) -> list[Frame]:
+    stream = Stream(model.encoder().encode, Search(postures[0], NO_SEARCH))
     return [frame for posture in postures if (frame := stream.add(posture)[1]) is not None]
 
 
