@@ -11,10 +11,9 @@ from actum.parameters import LiveParameters
 from actum.states import State
 from som_classifier.answers import final_action, ongoing_action, own_mark, partial_action, tensor
 from som_classifier.frames import Frame
-from som_classifier.map_description import MapDescription, map_description
-from som_classifier.model import Model
-from som_classifier.model_maps import NoMapsError
-from som_classifier.recognition import Recognition
+from som_classifier.model import Model, Recognition
+from som_classifier.model_loading import WatchedModel
+from som_classifier.model_maps import MapDescription, NoMapsError, map_description
 from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import ClosedSegment, OpenSegment
@@ -22,7 +21,6 @@ from som_classifier.settings import Settings
 from som_classifier.spotting.search import Search
 from som_classifier.spotting.spotted import Ongoing, SpottedSegment
 from som_classifier.streams import Stream
-from som_classifier.watched_model import WatchedModel
 
 POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""

@@ -13,10 +13,8 @@ from actum.skeletons import JOINTS
 from actum.som import Som
 from som_classifier.attention import PART_NAMES, Axes, Origin, PostureInput
 from som_classifier.frames import Frame
-from som_classifier.map_activity import NO_WINNER, MapActivity, map_activity, soft_activity
-from som_classifier.model import Arrays, Encoder, Model, ModelMetadata
-from som_classifier.ordered_vector import ordered_vector, trajectory
-from som_classifier.recognition import Recognition
+from som_classifier.map_activity import NO_WINNER, MapActivity, map_activity, ordered_vector, soft_activity, trajectory
+from som_classifier.model import Arrays, Encoder, Model, ModelMetadata, Recognition
 from som_classifier.supervised import SupervisedLayer
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]

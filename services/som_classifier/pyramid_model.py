@@ -23,18 +23,15 @@ from som_classifier.frame_activity import (
     segment_sums,
 )
 from som_classifier.frames import Frame
-from som_classifier.map_activity import soft_activity
-from som_classifier.model import Arrays, Model
-from som_classifier.movement import movement_m
-from som_classifier.ordered_vector import without_repeats
+from som_classifier.kinematics import movement_m
+from som_classifier.map_activity import soft_activity, without_repeats
+from som_classifier.model import Arrays, Model, Recognition
 from som_classifier.pyramid import PrefixSums, Pyramid
 from som_classifier.pyramid_metadata import PyramidMetadata
-from som_classifier.recognition import Recognition
 from som_classifier.second_layer import ActionMap
-from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.pyramid_spotter import PoolingOnce, PyramidSpotter
 from som_classifier.spotting.spotted import Spotter, SpottingOptions
-from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_model import CompletenessHeads, PyramidSpottingMetadata, SpottingModel
 from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
 from som_classifier.supervised import SupervisedLayer
 

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from som_classifier.map_activity import NO_WINNER, MapActivity
-from som_classifier.ordered_vector import ordered_vector, resampled, trajectory, without_repeats
+from som_classifier.map_activity import NO_WINNER, MapActivity, ordered_vector, resampled, trajectory, without_repeats
 
 cells = st.lists(st.integers(0, 899), min_size=1, max_size=40)
 points = st.integers(2, 80)

@@ -15,8 +15,7 @@ from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import OpenSegment
-from som_classifier.spotting.admission import Admission
-from som_classifier.spotting.search import SearchPlan
+from som_classifier.spotting.search import Admission, SearchPlan
 from som_classifier.spotting.spotted import NOTHING, Spotted, SpottedSegment, Spotter, SpottingOptions
 from som_classifier.streams import Stream
 
