@@ -56,17 +56,14 @@ class KinematicsFilter:
         last_ns, self._stamp_ns = self._stamp_ns, stamp_ns
         known = ~np.isnan(joints[:, 0])
         if last_ns is None or not 0 < stamp_ns - last_ns <= GAP_NS:
-            self._begin(joints, known)
+            self._known = known
+            self._before = self._smooth = self._lagging = np.nan_to_num(joints)
+            self._speed = np.zeros(joints.shape)
             return Kinematics(joints, joints - joints)
         if known.all() and self._known.all():
             self._advance(joints, (stamp_ns - last_ns) / SECOND_NS)
             return Kinematics(self._smooth, self._smooth - self._lagging)
         return self._advance_known(joints, known, (stamp_ns - last_ns) / SECOND_NS)
-
-    def _begin(self, joints: Array, known: Mask) -> None:
-        self._known = known
-        self._before = self._smooth = self._lagging = np.nan_to_num(joints)
-        self._speed = np.zeros(joints.shape)
 
     def _advance(self, joints: Array, elapsed_s: float) -> None:
         velocity = (joints - self._before) / elapsed_s

@@ -102,9 +102,11 @@ class SomClassifier:
             case Segment():
                 return self._mark(message)
             case Tick():
-                return self._tick(message)
-            case _:
-                return []
+                self._ticks += 1
+                if self._ticks % POLL_TICKS == 0:
+                    self._reload()
+                return [self._final(closed) for closed in self._segmenter.tick(message)]
+        return []
 
     def _mark(self, mark: Segment) -> list[Message]:
         """Answer a mark, but not one that a classifier put: it has put the answer as well."""
@@ -114,12 +116,6 @@ class SomClassifier:
             self.counters.counts["marks_ignored"] += 1
             return [self._final(closed) for closed in self._segmenter.decline(mark, MARKS_OFF)]
         return [self._final(closed) for closed in self._segmenter.mark(mark)]
-
-    def _tick(self, tick: Tick) -> list[Message]:
-        self._ticks += 1
-        if self._ticks % POLL_TICKS == 0:
-            self._reload()
-        return [self._final(closed) for closed in self._segmenter.tick(tick)]
 
     def _reload(self) -> None:
         model = self._source.poll(self.counters) if self._source else None
@@ -209,24 +205,19 @@ class SomClassifier:
 
     def _final(self, closed: ClosedSegment) -> Action:
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
-        reason = closed.reason or (None if recognition else self._why_not(closed))
+        reason = closed.reason
+        if reason is None and recognition is None:
+            frames = sum(frame.valid for frame in closed.frames)
+            least = 0 if self._model is None else self._model.min_frames
+            reason = f"too few frames: {frames}, at least {least} are needed" if least else "no model"
         if reason:
             self.counters.reject("rejected_segment", f"{closed.segment_id}: {reason}")
         return self._answer(closed, recognition, reason)
 
     def _answer(self, closed: ClosedSegment, recognition: Recognition | None, reason: str | None) -> Action:
-        explained = self._map_fields(closed.frames) if recognition and self._publish_maps else {}
+        explained: dict[str, Any] = {}
+        if recognition is not None and self._model is not None and self._publish_maps:
+            usable = [frame for frame in closed.frames if frame.valid]
+            maps = {name: tensor(activity) for name, activity in self._model.maps(usable).items()}
+            explained = {"maps": maps, "trace": tensor(self._model.trace(usable))}
         return final_action(closed, recognition, reason, self._sensor, session_id=self._session, **explained)
-
-    def _map_fields(self, frames: list[Frame]) -> dict[str, Any]:
-        """Return the fields that explain an answer: each map's activity, and the trajectory over the first."""
-        assert self._model is not None
-        usable = [frame for frame in frames if frame.valid]
-        maps = {name: tensor(activity) for name, activity in self._model.maps(usable).items()}
-        return {"maps": maps, "trace": tensor(self._model.trace(usable))}
-
-    def _why_not(self, closed: ClosedSegment) -> str:
-        if self._model is None:
-            return "no model"
-        frames = sum(frame.valid for frame in closed.frames)
-        return f"too few frames: {frames}, at least {self._model.min_frames} are needed"

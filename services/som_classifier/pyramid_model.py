@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Floats, Indices
+from actum.arrays import Array, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
 from som_classifier.first_layer import CHANNELS, INPUT_SIZES, MAP_INPUTS, Channel, FirstMaps
@@ -119,11 +119,11 @@ class PyramidModel(Model):
         scores = self.scores(activities, stages)
         cosines = self.layer3.cosines(self.action_map.activity(scores))
         winner = int(cosines.argmax())
-        inverse_temperature = sum(map(mul, stages, self.metadata.gains))
+        inverse_temperature = sum(map(mul, stages, self.metadata.gains)) * known_joint_share(activities)
         familiarity = self.familiarity(activities, scores)
         recognition = Recognition(
             label=self.labels[winner],
-            confidence=_probability(cosines, winner, inverse_temperature * known_joint_share(activities)),
+            confidence=float(1.0 / np.exp(inverse_temperature * (cosines - cosines[winner])).sum()),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
             part=most_moved_part(activities),
             familiarity=familiarity,
@@ -237,8 +237,3 @@ class PyramidModel(Model):
             f"its {name} is of shape {has}, not {should}" for name, (has, should) in shapes.items() if has != should
         )
         return next(wrong, None)
-
-
-def _probability(cosines: Floats, winner: int, inverse_temperature: float) -> float:
-    """Return the winner's share of softmax(inverse temperature × cosines), for cosines (actions,)."""
-    return float(1.0 / np.exp(inverse_temperature * (cosines - cosines[winner])).sum())

@@ -3,7 +3,7 @@
 A segment is the frames with start <= stamp <= end; which belong to it is decided by stamps alone.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
@@ -121,12 +121,12 @@ class ClosedSegment:
     segment_id: str
     start_ns: int
     end_ns: int
-    agent: int = 0
-    hand: Hand | None = None
-    label: str | None = None
-    frames: list[Frame] = field(default_factory=list)
-    missed: int = 0
-    reason: str | None = None
+    agent: int
+    hand: Hand | None
+    label: str | None
+    frames: list[Frame]
+    missed: int
+    reason: str | None
 
 
 def with_cause(reason: str, cause: str | None) -> str:

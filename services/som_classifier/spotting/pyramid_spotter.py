@@ -9,7 +9,6 @@ from actum.losses import StreamBuffer
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
 from som_classifier.kinematics import GAP_NS
-from som_classifier.spotting.decoding import Candidate
 from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, Spotter, SpottingOptions
 from som_classifier.spotting.spotting_model import SpottingModel, iou_of_completeness
 
@@ -126,11 +125,12 @@ class PyramidSpotter(Spotter):
         candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
         decided = self._decoder.step(now_ns, candidates)
         self._ongoing = self._likeliest(starts_ns.tolist(), now_ns, completeness)
-        return Spotted(tuple(self._segment(each) for each in decided), self._ongoing)
-
-    def _segment(self, candidate: Candidate) -> SpottedSegment:
-        frames = self._recent.between(candidate.start_ns, candidate.end_ns)
-        return SpottedSegment(frames[0].stamp_ns, candidate.end_ns, self._labels[candidate.action])
+        first_ns = [self._recent.between(each.start_ns, each.end_ns)[0].stamp_ns for each in decided]
+        segments = (
+            SpottedSegment(start_ns, each.end_ns, self._labels[each.action])
+            for start_ns, each in zip(first_ns, decided, strict=True)
+        )
+        return Spotted(tuple(segments), self._ongoing)
 
     def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
         """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""
