@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from actum.messages import Action, Message, Posture, Segment, Skeleton
-from actum.node import Counters, Tick, replay
+from actum.node import Tick, replay
 from actum.skeletons import INDEX
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.samples import SegmentSample
@@ -25,6 +25,7 @@ from som_classifier.presets import Preset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.search import NO_SEARCH, Search
 from som_classifier.streams import Stream
+from spotters import Box
 from wire import Wire, without_seq
 
 each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
@@ -67,17 +68,6 @@ def always(preset: Preset) -> list[Action]:
 
 def finals(actions: Iterable[Action]) -> list[Action]:
     return [action for action in actions if action.final]
-
-
-class Box:
-    """A place where a model may be put."""
-
-    def __init__(self) -> None:
-        self.model: Model | None = None
-
-    def poll(self, counters: Counters) -> Model | None:
-        model, self.model = self.model, None
-        return model
 
 
 @each_preset
