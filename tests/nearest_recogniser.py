@@ -22,10 +22,10 @@ from actum_model_trainer.training import SEARCHES, TRAININGS
 from som_classifier import __main__ as classifier
 from som_classifier.attention import PART_NAMES
 from som_classifier.frames import Frame
-from som_classifier.model import Arrays, Model, ModelMetadata
+from som_classifier.model import Arrays, Model, ModelMetadata, Recognition
 from som_classifier.model_loading import KINDS
 from som_classifier.presets import PRESETS, Preset
-from som_classifier.recognition import Recognition
+from som_classifier.spotting.pyramid_spotter import RecentFrames
 from som_classifier.spotting.spotted import (
     NOTHING,
     Ongoing,
@@ -35,7 +35,6 @@ from som_classifier.spotting.spotted import (
     SpottingMetadata,
     SpottingOptions,
 )
-from som_classifier.spotting.windows import RecentFrames
 
 SEEN = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("elbow", "hand")]
 INTERVAL_NS, LAG_NS = SECOND_NS // 10, SECOND_NS // 2

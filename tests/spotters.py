@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 
-from actum.node import SECOND_NS
+from actum.node import SECOND_NS, Counters
 from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.pyramid_model import PyramidModel
@@ -92,3 +92,14 @@ def _ongoing(segment: SpottedSegment, now_ns: int) -> Ongoing:
 def finding(model: Model, *segments: SpottedSegment, **more: float) -> Model:
     """Return the model with a search that finds given segments in every stream."""
     return spotting(model, lambda _: Scripted(*segments), **more)
+
+
+class Box:
+    """A place where a model may be put."""
+
+    def __init__(self) -> None:
+        self.model: Model | None = None
+
+    def poll(self, counters: Counters) -> Model | None:
+        model, self.model = self.model, None
+        return model

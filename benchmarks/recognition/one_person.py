@@ -8,7 +8,7 @@ from sklearn.metrics import roc_auc_score
 
 from actum.node import SECOND_NS
 from actum_model_trainer.calibration_error import calibration_error, confidence_bins
-from som_classifier.recognition import Recognition
+from som_classifier.model import Recognition
 
 from .bench import Bench
 from .datasets import Datasets, Example

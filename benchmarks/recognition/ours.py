@@ -5,9 +5,8 @@ from dataclasses import dataclass
 
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.training import train
-from som_classifier.model import Model
+from som_classifier.model import Model, Recognition
 from som_classifier.presets import DEFAULT, PAPER, Preset
-from som_classifier.recognition import Recognition
 
 from .datasets import Example
 from .splits import SEED

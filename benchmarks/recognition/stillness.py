@@ -17,10 +17,9 @@ from actum_model_trainer.confidence import LEAST_MOVEMENT_SHARE, least_movement_
 from actum_model_trainer.samples import LabelledStream, SegmentSample, samples_from
 from scene_simulator.driven_simulator import DrivenSimulator
 from scene_simulator.settings import Settings
-from som_classifier.model import Model
-from som_classifier.movement import movement_m
+from som_classifier.kinematics import movement_m
+from som_classifier.model import Model, Recognition
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.recognition import Recognition
 
 from .bench import Bench
 from .datasets import Datasets, joints_by_stamp

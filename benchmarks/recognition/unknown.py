@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from sklearn.metrics import roc_auc_score
 
-from som_classifier.recognition import Recognition
+from som_classifier.model import Recognition
 
 from .bench import Bench
 from .datasets import Example

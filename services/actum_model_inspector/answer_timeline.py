@@ -14,8 +14,7 @@ from actum_model_inspector.answered import AnsweredSegment, encoded, headline
 from actum_model_inspector.stick_figures import Pen, draw_figures
 from actum_model_inspector.style import HALO, action_colours, axes_at, figure_without_layout, hide_axes, in_house_style
 from actum_model_inspector.text_layout import shortened, wrapped
-from som_classifier.model import Model
-from som_classifier.recognition import Recognition
+from som_classifier.model import Model, Recognition
 
 NAMED = 5  # lines with colour and name: more are hard to tell apart
 FIGURES = 6  # of the actor: as many as stand side by side without touching

@@ -11,9 +11,8 @@ from actum_model_inspector.text_layout import shortened
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.recorded_segments import classifier_input, closed_segments, sensors
 from som_classifier.frames import Frame
-from som_classifier.model import Model
+from som_classifier.model import Model, Recognition
 from som_classifier.model_maps import maps_of
-from som_classifier.recognition import Recognition
 from som_classifier.segments import ClosedSegment
 
 

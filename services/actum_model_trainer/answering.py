@@ -7,8 +7,7 @@ import numpy as np
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.frames import Frame
 from som_classifier.kinematics import Kinematics
-from som_classifier.model import Model
-from som_classifier.recognition import Recognition
+from som_classifier.model import Model, Recognition
 
 
 def encoded(model: Model, sample: SegmentSample) -> list[Frame]:

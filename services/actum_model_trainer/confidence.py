@@ -18,7 +18,7 @@ from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
 from som_classifier.first_layer import FirstMaps
-from som_classifier.movement import movement_m
+from som_classifier.kinematics import movement_m
 from som_classifier.presets import Prior, PyramidPreset
 
 LEAST_MOVEMENT_SHARE = 0.5

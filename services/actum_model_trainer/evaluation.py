@@ -14,9 +14,8 @@ from actum.recording import Recording
 from actum_model_trainer.calibration_error import MIN_ANSWERS, calibration_error, confidence_bins
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.recorded_segments import classifier_input, sensors
-from som_classifier.model import Model
+from som_classifier.model import Model, Recognition
 from som_classifier.node import SomClassifier
-from som_classifier.recognition import Recognition
 from som_classifier.segmentation import Segmentation
 
 Z_95 = 1.959963984540054  # standard deviations: the normal distribution holds 95 % within

@@ -13,8 +13,7 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, provenance
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.attention import PostureInput
-from som_classifier.map_activity import MapActivity, map_activity, soft_activity
-from som_classifier.ordered_vector import ordered_vector, trajectory
+from som_classifier.map_activity import MapActivity, map_activity, ordered_vector, soft_activity, trajectory
 from som_classifier.paper_model import PaperMetadata, PaperModel
 from som_classifier.presets import MapTraining, PaperPreset
 from som_classifier.supervised import SupervisedLayer

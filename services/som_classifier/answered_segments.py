@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from actum.messages import Action, Segment
 from actum.node import Counters
-from som_classifier.segments import ClosedSegment, OpenSegment
+from som_classifier.segments import State
 
 REMEMBERED = 10_000
 """Segment ids kept: hours of actions, in a few megabytes."""
@@ -18,16 +18,14 @@ class _Answered:
     Attributes:
         start_ns: None where unknown, as the next.
         end_ns: its end.
-        reused: whether a later segment has reused its id.
-        told_again: the kinds of marks that may come once more, or late, though it is answered.
-        is_of_before: whether the source has started anew since, so that its id may be used again.
+        state: `ANSWERED`, `USED_UP` or `FORMER`.
+        awaited: the kinds of marks that may come once more, or late, though it is answered.
     """
 
     start_ns: int | None
     end_ns: int | None
-    reused: bool = False
-    told_again: set[str] = field(default_factory=set)
-    is_of_before: bool = False
+    state: State = State.ANSWERED
+    awaited: set[str] = field(default_factory=set)
 
     def stamp_ns(self, kind: str) -> int | None:
         """Return the stamp of its start or its end; None where it is unknown."""
@@ -41,77 +39,63 @@ class AnsweredSegments:
         self._counters = counters
         self._answered: OrderedDict[str, _Answered] = OrderedDict()
 
-    def has(self, mark: Segment) -> bool:
-        """Tell whether a mark is of an answered segment, and not of a new one with the id of one of an earlier session.
+    def state(self, mark: Segment) -> State:
+        """Return how far the segment of a mark has come; `NEW` where it is not answered.
 
-        Of that one are the marks with its stamps, and the end where it was given up without.
+        Of a former segment are the marks with its stamps, and the end mark where it was given up without one.
         """
         answered = self._answered.get(mark.segment_id)
-        if answered is None or not answered.is_of_before:
-            return answered is not None
-        if mark.kind == "end" and answered.end_ns is None:
-            return True
-        return mark.stamp_ns is not None and mark.stamp_ns == answered.stamp_ns(mark.kind)
+        if answered is None:
+            return State.NEW
+        known_ns = answered.stamp_ns(mark.kind)
+        own = mark.kind == "end" if known_ns is None else mark.stamp_ns == known_ns
+        return answered.state if own or answered.state is not State.FORMER else State.NEW
 
     def end_session(self) -> None:
         """Note that the source has started anew: ids may be used again, and marks of before may still come."""
         for answered in self._answered.values():
-            answered.told_again, answered.is_of_before = {"start", "end"}, True
+            answered.awaited, answered.state = {"start", "end"}, State.FORMER
 
     def remember(self, segment_id: str, start_ns: int | None, end_ns: int | None) -> None:
         """Add a segment that has just been answered."""
-        self._answered[segment_id] = _Answered(start_ns, end_ns)
+        self._add(segment_id, _Answered(start_ns, end_ns))
+
+    def recall(self, answer: Action) -> None:
+        """Add a segment that was answered before this process was there; a second one of an id has used it up."""
+        state = State.USED_UP if answer.segment_id in self._answered else State.ANSWERED
+        end_ns = answer.end_ns if answer.valid or answer.end_ns != answer.start_ns else None
+        self._add(answer.segment_id, _Answered(answer.start_ns, end_ns, state, {"start", "end"}))
+
+    def _add(self, segment_id: str, answered: _Answered) -> None:
+        self._answered[segment_id] = answered
         while len(self._answered) > REMEMBERED:
             self._answered.popitem(last=False)
 
-    def recall(self, answer: Action) -> None:
-        """Add a segment that was answered before this process was there; a second one of an id has reused it."""
-        reused = answer.segment_id in self._answered
-        ended = answer.valid or answer.end_ns != answer.start_ns
-        self.remember(answer.segment_id, answer.start_ns, answer.end_ns if ended else None)
-        self._answered[answer.segment_id].reused = reused
-        self._answered[answer.segment_id].told_again = {"start", "end"}
+    def mark_again(self, mark: Segment, stamp_ns: int) -> bool:
+        """Take a mark with the id of an answered segment; return whether it uses the id for another segment.
 
-    def mark_again(self, mark: Segment, newest_ns: int) -> list[ClosedSegment]:
-        """Count a mark that repeats one of an answered segment; return the rejected segment of one that reuses its id.
+        Any other mark is counted: one that was put before this process was there, or before the source started anew,
+        and one that repeats an earlier mark or comes too late.
 
         Args:
             mark: its id is that of an answered segment.
-            newest_ns: the stamp that a mark without one gets.
+            stamp_ns: its stamp, or the newest one where it has none.
         """
         answered = self._answered[mark.segment_id]
-        if self._is_told_again(mark, answered):
+        known_ns, is_end = answered.stamp_ns(mark.kind), mark.kind == "end"
+        if mark.kind in answered.awaited and (mark.stamp_ns in (None, known_ns) or (is_end and known_ns is None)):
+            answered.awaited.remove(mark.kind)
             self._counters.counts["marks_told_again"] += 1
-            return []
-        if self._is_repetition(mark, answered):
-            return []
-        stamp_ns = mark.stamp_ns if mark.stamp_ns is not None else newest_ns
-        answered.reused = True
-        if mark.kind == "start":
-            answered.start_ns = stamp_ns
-        return [OpenSegment.of(mark, stamp_ns, stamp_ns).rejected("segment_id reused")]
-
-    @staticmethod
-    def _is_told_again(mark: Segment, answered: _Answered) -> bool:
-        """Tell whether a mark is one to which the answer was given before this process was there."""
-        known_ns = answered.stamp_ns(mark.kind)
-        expected = mark.stamp_ns in (None, known_ns) or (mark.kind == "end" and known_ns is None)
-        if mark.kind not in answered.told_again or not expected:
-            return False
-        answered.told_again.remove(mark.kind)
-        return True
-
-    def _is_repetition(self, mark: Segment, answered: _Answered) -> bool:
-        """Count a mark that repeats an earlier one, or an end that came too late; False if it begins a new segment."""
-        is_start, known_ns = mark.kind == "start", answered.stamp_ns(mark.kind)
-        if not is_start and (answered.reused or mark.stamp_ns is None):
-            self._counters.reject("duplicate_mark", f"end of the answered segment {mark.segment_id!r}")
-        elif not is_start and known_ns is None:
+        elif is_end and known_ns is None and mark.stamp_ns is not None and answered.state is not State.USED_UP:
             self._counters.reject("late", f"end of {mark.segment_id!r} after it was given up")
-        elif mark.stamp_ns is not None and mark.stamp_ns == known_ns:
+        elif (mark.stamp_ns is not None and mark.stamp_ns == known_ns) or (
+            is_end and (mark.stamp_ns is None or answered.state is State.USED_UP)
+        ):
             self._counters.reject("duplicate_mark", f"{mark.kind} of the answered segment {mark.segment_id!r}")
-        elif is_start and answered.reused and mark.stamp_ns is None:
+        elif mark.stamp_ns is None and answered.state is State.USED_UP:
             self._counters.reject("duplicate_mark", f"{mark.segment_id!r} is used up")
         else:
-            return False
-        return True
+            answered.state = State.USED_UP
+            answered.start_ns = answered.start_ns if is_end else stamp_ns
+            return True
+        return False

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from actum.messages import AUTO, Action, Posture, Segment, Tensor
 from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
-from som_classifier.recognition import Recognition
+from som_classifier.model import Recognition
 from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.spotting.spotted import Ongoing
 

@@ -67,7 +67,7 @@ def frame_of(posture: Posture, lost: int, smoothing: KinematicsFilter) -> Frame:
         posture.previous_ns,
         tuple(posture.agents),
         posture.missed + lost,
-        _distance_m(posture),
+        math.inf if posture.ego_from_camera is None else math.hypot(*posture.ego_from_camera[3:12:4]),
         None,
         None,
         reason=posture.reason,
@@ -98,10 +98,3 @@ def _is_usable(joints: Sequence[Joint], array: Array) -> bool:
     """Tell whether some joint is known and all known ones are finite and within bounds; `array` holds the same ones."""
     missing = joints.count(None)
     return missing < len(joints) and np.count_nonzero(np.abs(array) < MAX_COORDINATE_M) == array.size - 3 * missing
-
-
-def _distance_m(posture: Posture) -> float:
-    """Return the distance (m) from the camera to the egocentric frame's origin; infinite where unknown."""
-    if posture.ego_from_camera is None:
-        return math.inf
-    return math.hypot(*posture.ego_from_camera[3:12:4])

@@ -4,6 +4,7 @@ import hashlib
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Protocol
@@ -16,12 +17,32 @@ from actum.atomic_file import replaced
 from actum.messages import MOST_ACTIONS, Name
 from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
-from som_classifier.recognition import Recognition
 from som_classifier.spotting.spotted import Spotter, SpottingMetadata, SpottingOptions
 
 Arrays = Mapping[str, NDArray[Any]]
 MOST_SAMPLES = 1_000_000
 """Most samples that a file may count in one place of its confusion matrix, each of which is listed."""
+
+
+@dataclass(frozen=True)
+class Recognition:
+    """The action recognised in a segment's frames so far.
+
+    Attributes:
+        label: the action whose neuron is most active.
+        confidence: in the label, within [0, 1]; each kind of model defines it.
+        activations: every neuron's cosine by action.
+        part: the body part that moves most.
+        familiarity: how similar the segment is to what was trained; None where the model cannot tell.
+        unknown: whether its familiarity is so low that the action may be none of those trained.
+    """
+
+    label: str
+    confidence: float
+    activations: dict[str, float]
+    part: str
+    familiarity: float | None = None
+    unknown: bool = False
 
 
 class ModelMetadata(BaseModel):

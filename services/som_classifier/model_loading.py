@@ -1,4 +1,4 @@
-"""Loads a model file, whichever recogniser it holds, or says what is wrong with it."""
+"""Loads a model file, whichever recogniser it holds, whenever it changes, or says what is wrong with it."""
 
 import json
 import math
@@ -14,6 +14,8 @@ import numpy as np
 from pydantic import ValidationError
 
 from actum import __version__
+from actum.node import Counters
+from actum.states import State
 from som_classifier.model import Arrays, Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
@@ -120,3 +122,43 @@ def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
             raise ValueError(f"the entry {member.filename} in the file is not a NumPy array")
         shape, _, dtype = read_header(array)
     return int(math.prod(shape) * dtype.itemsize)
+
+
+class WatchedModel:
+    """Loads the file whenever it has changed, may be read since, or is back where it could not be looked at."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._loaded_version: tuple[int, int, int] | None = None
+        self._loaded = False
+
+    def poll(self, counters: Counters) -> Model | None:
+        """Return the model if the file is new or changed and can be loaded, else None.
+
+        A file that cannot be loaded is counted as `bad_model`; the state says so, and also that there is no file yet.
+        """
+        try:
+            stat = self._path.stat()
+        except FileNotFoundError:
+            if not self._loaded:
+                counters.state = State.NO_MODEL.because(f"there is no {self._path} yet")
+            return None
+        except OSError as error:
+            self._loaded_version = None
+            self._refuse(counters, str(error))
+            return None
+        version = (stat.st_mtime_ns, stat.st_ctime_ns, stat.st_size)
+        if version == self._loaded_version:
+            return None
+        self._loaded_version = version
+        try:
+            model = load_model(self._path)
+        except ModelError as error:
+            self._refuse(counters, str(error))
+            return None
+        self._loaded = True
+        return model
+
+    def _refuse(self, counters: Counters, why: str) -> None:
+        counters.reject("bad_model", why)
+        counters.state = (State.MODEL_NOT_RENEWED if self._loaded else State.NO_MODEL).because(why)

@@ -11,17 +11,16 @@ from actum.parameters import LiveParameters
 from actum.states import State
 from som_classifier.answers import final_action, ongoing_action, own_mark, partial_action, tensor
 from som_classifier.frames import Frame
-from som_classifier.map_description import MapDescription, map_description
-from som_classifier.model import Model
-from som_classifier.model_maps import NoMapsError
-from som_classifier.recognition import Recognition
+from som_classifier.model import Model, Recognition
+from som_classifier.model_loading import WatchedModel
+from som_classifier.model_maps import MapDescription, NoMapsError, map_description
 from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.settings import Settings
 from som_classifier.spotting.search import Search
 from som_classifier.spotting.spotted import Ongoing, SpottedSegment
-from som_classifier.watched_model import WatchedModel
+from som_classifier.streams import Stream
 
 POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
@@ -103,9 +102,11 @@ class SomClassifier:
             case Segment():
                 return self._mark(message)
             case Tick():
-                return self._tick(message)
-            case _:
-                return []
+                self._ticks += 1
+                if self._ticks % POLL_TICKS == 0:
+                    self._reload()
+                return [self._final(closed) for closed in self._segmenter.tick(message)]
+        return []
 
     def _mark(self, mark: Segment) -> list[Message]:
         """Answer a mark, but not one that a classifier put: it has put the answer as well."""
@@ -116,12 +117,6 @@ class SomClassifier:
             return [self._final(closed) for closed in self._segmenter.decline(mark, MARKS_OFF)]
         return [self._final(closed) for closed in self._segmenter.mark(mark)]
 
-    def _tick(self, tick: Tick) -> list[Message]:
-        self._ticks += 1
-        if self._ticks % POLL_TICKS == 0:
-            self._reload()
-        return [self._final(closed) for closed in self._segmenter.tick(tick)]
-
     def _reload(self) -> None:
         model = self._source.poll(self.counters) if self._source else None
         if model is not None:
@@ -131,7 +126,7 @@ class SomClassifier:
         self._publish_maps, self._segmentation = settings.publish_maps, settings.segmentation
         if self._model is not None:
             self.counters.state = self._segmentation.state(self._model)
-            self._segmenter.adjust(self._segmentation.plan(self._model))
+            self._segmenter.streams.adjust(self._segmentation.plan(self._model))
 
     def _describe_maps(self, _request: NoFields) -> MapDescription:
         """Tell what the units of the model's maps stand for: a body for each posture, an action for each place."""
@@ -143,34 +138,35 @@ class SomClassifier:
     def _use(self, model: Model) -> None:
         self._model, self.counters.state = model, self._segmentation.state(model)
         self.counters.details["model"] = model.id
-        self._segmenter.use(lambda: model.encoder().encode, self._segmentation.plan(model))
+        self._segmenter.streams.use(lambda: model.encoder().encode, self._segmentation.plan(model))
 
     def _posture(self, posture: Posture) -> Iterator[Message]:
         frame, closed = self._segmenter.posture(posture)
-        if frame is not None:
+        stream = None if frame is None else self._segmenter.streams.of(posture.agent)
+        if stream is not None:
             for segment in self._segmenter.open_at(posture.agent, posture.stamp_ns):
-                yield from self._partial(segment, posture)
+                yield from self._partial(segment, stream, posture)
         self._session = self._session or posture.session_id
         for answer in closed:  # of the session before, where this posture begins another
             yield self._final(answer)
         self._session = posture.session_id
-        search = self._segmenter.search_of(posture.agent)
-        if frame is not None and search is not None:
-            spotted = search.step(frame)
+        if frame is not None and stream is not None:
+            spotted = stream.search.step(frame)
             for found in spotted.segments:
-                yield from self._found(found, search, posture.agent)
+                yield from self._found(found, stream, posture.agent)
             if spotted.ongoing is not None:
-                yield from self._ongoing(spotted.ongoing, search, posture)
+                yield from self._ongoing(spotted.ongoing, stream, posture)
 
-    def _partial(self, segment: OpenSegment, posture: Posture) -> Iterator[Action]:
-        frames = self._segmenter.frames_of(segment)
+    def _partial(self, segment: OpenSegment, stream: Stream, posture: Posture) -> Iterator[Action]:
+        frames = stream.between(segment.start_ns or 0, posture.stamp_ns)
         recognition = self._recognise(frames, complete=False)
-        if recognition is not None and segment.start_ns is not None:
+        if recognition is not None:
             yield partial_action(segment, recognition, frames, posture)
 
-    def _found(self, found: SpottedSegment, search: Search, agent: int) -> Iterator[Message]:
+    def _found(self, found: SpottedSegment, stream: Stream, agent: int) -> Iterator[Message]:
         """Mark and answer a segment that was found, unless it is not to be told; count what becomes of it."""
-        closed = self._segmenter.cut(OpenSegment(search.next_id, found.start_ns, agent, None, None, found.end_ns))
+        search = stream.search
+        closed = stream.cut(OpenSegment(search.next_id, found.start_ns, agent, end_ns=found.end_ns))
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
         fate = self._fate(closed, recognition, search)
         self.counters.counts.update(["found", fate])
@@ -194,11 +190,12 @@ class SomClassifier:
             return "marked"
         return search.admission.admit(recognition.label, closed.start_ns, closed.end_ns) or "told"
 
-    def _ongoing(self, ongoing: Ongoing, search: Search, posture: Posture) -> Iterator[Action]:
+    def _ongoing(self, ongoing: Ongoing, stream: Stream, posture: Posture) -> Iterator[Action]:
         """Say what seems to be going on, unless it is marked or would not be told."""
-        bounds = posture.agent, ongoing.start_ns, posture.stamp_ns
-        if not self._segmenter.is_marked(*bounds) and not search.admission.hindrance(ongoing.label, ongoing.start_ns):
-            yield ongoing_action(search.next_id, ongoing, self._segmenter.frames_between(*bounds), posture)
+        search, bounds = stream.search, (ongoing.start_ns, posture.stamp_ns)
+        hindrance = search.admission.hindrance(ongoing.label, ongoing.start_ns)
+        if hindrance is None and not self._segmenter.is_marked(posture.agent, *bounds):
+            yield ongoing_action(search.next_id, ongoing, stream.between(*bounds), posture)
 
     def _recognise(self, frames: list[Frame], complete: bool) -> Recognition | None:
         usable = [frame for frame in frames if frame.valid]
@@ -208,24 +205,19 @@ class SomClassifier:
 
     def _final(self, closed: ClosedSegment) -> Action:
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
-        reason = closed.reason or (None if recognition else self._why_not(closed))
+        reason = closed.reason
+        if reason is None and recognition is None:
+            frames = sum(frame.valid for frame in closed.frames)
+            least = 0 if self._model is None else self._model.min_frames
+            reason = f"too few frames: {frames}, at least {least} are needed" if least else "no model"
         if reason:
             self.counters.reject("rejected_segment", f"{closed.segment_id}: {reason}")
         return self._answer(closed, recognition, reason)
 
     def _answer(self, closed: ClosedSegment, recognition: Recognition | None, reason: str | None) -> Action:
-        explained = self._map_fields(closed.frames) if recognition and self._publish_maps else {}
+        explained: dict[str, Any] = {}
+        if recognition is not None and self._model is not None and self._publish_maps:
+            usable = [frame for frame in closed.frames if frame.valid]
+            maps = {name: tensor(activity) for name, activity in self._model.maps(usable).items()}
+            explained = {"maps": maps, "trace": tensor(self._model.trace(usable))}
         return final_action(closed, recognition, reason, self._sensor, session_id=self._session, **explained)
-
-    def _map_fields(self, frames: list[Frame]) -> dict[str, Any]:
-        """Return the fields that explain an answer: each map's activity, and the trajectory over the first."""
-        assert self._model is not None
-        usable = [frame for frame in frames if frame.valid]
-        maps = {name: tensor(activity) for name, activity in self._model.maps(usable).items()}
-        return {"maps": maps, "trace": tensor(self._model.trace(usable))}
-
-    def _why_not(self, closed: ClosedSegment) -> str:
-        if self._model is None:
-            return "no model"
-        frames = sum(frame.valid for frame in closed.frames)
-        return f"too few frames: {frames}, at least {self._model.min_frames} are needed"

@@ -13,10 +13,8 @@ from actum.skeletons import JOINTS
 from actum.som import Som
 from som_classifier.attention import PART_NAMES, Axes, Origin, PostureInput
 from som_classifier.frames import Frame
-from som_classifier.map_activity import NO_WINNER, MapActivity, map_activity, soft_activity
-from som_classifier.model import Arrays, Encoder, Model, ModelMetadata
-from som_classifier.ordered_vector import ordered_vector, trajectory
-from som_classifier.recognition import Recognition
+from som_classifier.map_activity import NO_WINNER, MapActivity, map_activity, ordered_vector, soft_activity, trajectory
+from som_classifier.model import Arrays, Encoder, Model, ModelMetadata, Recognition
 from som_classifier.supervised import SupervisedLayer
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -102,9 +100,11 @@ class PaperModel(Model):
         part, attended = self.attended(frames)
         cosines = self.layer3.cosines(self._second_activity(trajectory(attended))).tolist()
         winner = int(np.argmax(cosines))
+        positive = sum(max(cosine, 0.0) for cosine in cosines)
+        share = max(cosines[winner], 0.0) / positive if positive > 0 else 0.0
         return Recognition(
             label=self.labels[winner],
-            confidence=_share(cosines, winner) * float((attended.winners != NO_WINNER).mean()),
+            confidence=share * float((attended.winners != NO_WINNER).mean()),
             activations=dict(zip(self.labels, cosines, strict=True)),
             part=PART_NAMES[part],
         )
@@ -170,9 +170,3 @@ class _FrameEncoder:
         """Return the first map's activity for a valid frame."""
         assert frame.joints is not None and frame.kinematics is not None
         return self._model.first_activity(frame.joints, frame.kinematics.posture)
-
-
-def _share(cosines: list[float], winner: int) -> float:
-    """Return the winner's share of the positive cosines, 0 where none is positive."""
-    positive = sum(max(cosine, 0.0) for cosine in cosines)
-    return max(cosines[winner], 0.0) / positive if positive > 0 else 0.0

@@ -126,7 +126,9 @@ class Pyramid:
             raise ValueError("the segment contains no frame")
         at = segment.instants_of(self._borders)
         below = np.minimum(at.astype(np.intp), len(segment) - 1)
-        sums, growth = _sums_at_and_after(segment, below.tolist())
+        sums, growth = (
+            segment.since_start([*below.tolist(), *(below + 1).tolist()]).astype(np.float32).reshape(2, len(below), -1)
+        )
         growth -= sums
         growth *= (at - below).astype(np.float32)[:, None]
         sums += growth
@@ -159,9 +161,3 @@ class Pyramid:
     def _ends(self) -> Indices:
         """At which of the borders each cell ends, shape (cells,)."""
         return np.array([self._borders.index(end) for _, end in self._spans])
-
-
-def _sums_at_and_after(segment: PrefixSums, below: Sequence[int]) -> NDArray[np.float32]:
-    """Return the sums since the start at these instants and at those right after, shape (2, len(below), units)."""
-    sums = segment.since_start([*below, *(k + 1 for k in below)])
-    return sums.astype(np.float32).reshape(2, len(below), -1)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Floats, Indices
+from actum.arrays import Array, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
 from som_classifier.first_layer import CHANNELS, INPUT_SIZES, MAP_INPUTS, Channel, FirstMaps
@@ -23,18 +23,15 @@ from som_classifier.frame_activity import (
     segment_sums,
 )
 from som_classifier.frames import Frame
-from som_classifier.map_activity import soft_activity
-from som_classifier.model import Arrays, Model
-from som_classifier.movement import movement_m
-from som_classifier.ordered_vector import without_repeats
+from som_classifier.kinematics import movement_m
+from som_classifier.map_activity import soft_activity, without_repeats
+from som_classifier.model import Arrays, Model, Recognition
 from som_classifier.pyramid import PrefixSums, Pyramid
 from som_classifier.pyramid_metadata import PyramidMetadata
-from som_classifier.recognition import Recognition
 from som_classifier.second_layer import ActionMap
-from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.pyramid_spotter import PoolingOnce, PyramidSpotter
 from som_classifier.spotting.spotted import Spotter, SpottingOptions
-from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_model import CompletenessHeads, PyramidSpottingMetadata, SpottingModel
 from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
 from som_classifier.supervised import SupervisedLayer
 
@@ -122,11 +119,11 @@ class PyramidModel(Model):
         scores = self.scores(activities, stages)
         cosines = self.layer3.cosines(self.action_map.activity(scores))
         winner = int(cosines.argmax())
-        inverse_temperature = sum(map(mul, stages, self.metadata.gains))
+        inverse_temperature = sum(map(mul, stages, self.metadata.gains)) * known_joint_share(activities)
         familiarity = self.familiarity(activities, scores)
         recognition = Recognition(
             label=self.labels[winner],
-            confidence=_probability(cosines, winner, inverse_temperature * known_joint_share(activities)),
+            confidence=float(1.0 / np.exp(inverse_temperature * (cosines - cosines[winner])).sum()),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
             part=most_moved_part(activities),
             familiarity=familiarity,
@@ -240,8 +237,3 @@ class PyramidModel(Model):
             f"its {name} is of shape {has}, not {should}" for name, (has, should) in shapes.items() if has != should
         )
         return next(wrong, None)
-
-
-def _probability(cosines: Floats, winner: int, inverse_temperature: float) -> float:
-    """Return the winner's share of softmax(inverse temperature × cosines), for cosines (actions,)."""
-    return float(1.0 / np.exp(inverse_temperature * (cosines - cosines[winner])).sum())

@@ -1,68 +1,67 @@
 """Cuts postures into segments by marks: whose, from when to when, with which frames, or why not.
 
 A segment closes once its posture stream has reached the end, or after two seconds of waiting for it; while nobody's
-postures come, as when a link is cut, after ten.
+postures come, as when a link is cut, after ten. `som_classifier.segments.State` lists the states of a segment.
 """
 
-from collections import OrderedDict, deque
-from collections.abc import Callable, Sequence
+from collections import deque
+from collections.abc import Sequence
 from itertools import chain
 
 from actum.flow import Flow
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS, MOST_OPEN_SEGMENTS
 from actum.messages import Action, Posture, Segment
-from actum.node import Counters, Tick
+from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
 from som_classifier.answered_segments import AnsweredSegments
-from som_classifier.beginning import Beginning
 from som_classifier.frames import Frame
-from som_classifier.losses import NO_END, UNPLACED, why_incomplete, why_no_end
-from som_classifier.segments import ClosedSegment, OpenSegment, with_cause
-from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
-from som_classifier.streams import FAR_FUTURE_NS, Encode, Streams
+from som_classifier.segments import ClosedSegment, OpenSegment, State, with_cause
+from som_classifier.streams import Streams
 
-LATE_FOR = 16
-"""Segments remembered of those that closed before all their frames had come; their postures are counted as late."""
 MARKED = 256
 """Closed marked segments remembered, more than anybody marks in minutes: they win over found ones."""
+SETTLING_NS = SECOND_NS
+"""How long after its start a resumed process may be given marks that were put before it (ns): they come at once."""
+NO_END = "start without end: no end within 60 s"
+"""The reason of a segment that is longer than any may be."""
+UNPLACED = "the classifier had only just started, so it could not date a mark without a stamp"
+"""The reason of a segment whose mark may have waited for the classifier."""
 
 
 class Segmenter:
-    """Keeps the open segments of one sensor and closes each exactly once."""
+    """Keeps the open segments of one sensor and closes each exactly once.
+
+    Attributes:
+        streams: the frames of all agents.
+    """
 
     def __init__(self, counters: Counters) -> None:
+        self.streams = Streams(counters)
         self._counters = counters
-        self._streams = Streams(counters)
-        self._open: OrderedDict[str, OpenSegment] = OrderedDict()
+        self._open: dict[str, OpenSegment] = {}
         self._answered = AnsweredSegments(counters)
         self._marked: deque[OpenSegment] = deque(maxlen=MARKED)
-        self._late: deque[tuple[int, range]] = deque(maxlen=LATE_FOR)
         self._session: str | None = None
         self._flow = Flow()
-        self._beginning = Beginning()
+        self._is_resumed = False
+        self._now_ns = self._first_tick_ns = -1
 
     def remember(self, answers: Sequence[Action]) -> None:
         """Take the answers given before this process was there; marks that were put meanwhile may come now."""
-        self._beginning.resume(answers)
+        self._is_resumed = True
+        self._session = next((answer.session_id for answer in reversed(answers) if answer.session_id), None)
         self._flow.expect()
         for answer in answers:
             self._answered.recall(answer)
             known = answer.segment_id, answer.start_ns, answer.agent, answer.hand, None, answer.end_ns
             self._marked.append(OpenSegment(*known))
 
-    def use(self, encoders: Callable[[], Encode], plan: SearchPlan = NO_SEARCH) -> None:
-        """Encode every agent's frames by an encoder of its own, kept ones and those to come; search the latter."""
-        self._streams.use(encoders, plan)
-
-    def adjust(self, plan: SearchPlan) -> None:
-        """Search every agent's frames by another plan for the same model."""
-        self._streams.adjust(plan)
-
     def posture(self, posture: Posture) -> tuple[Frame | None, list[ClosedSegment]]:
         """Take the next posture; return its frame, None if it is stale, and the segments it closes."""
         closed = self._restart(posture.session_id)
-        order, frame = self._streams.add(posture)
-        late = any(posture.agent == agent and posture.stamp_ns in stamps for agent, stamps in self._late)
+        order, frame = self.streams.add(posture)
+        stream = self.streams.of(posture.agent)
+        late = stream is not None and stream.is_too_late(posture.stamp_ns)
         detail = f"posture of agent {posture.agent} at {posture.stamp_ns}"
         if frame is None:
             self._counters.reject("late" if late else "stale_stamp", detail)
@@ -70,63 +69,71 @@ class Segmenter:
         if posture.valid and not frame.valid:
             self._counters.reject("bad_posture", f"{detail}: missing, non-finite or absurd joints or motion")
         if order is Order.RESTART:
-            closed += self._close_all("the source started anew")
+            closed += self._close_all()
             self._marked.clear()
         elif late:
             self._counters.reject("late", f"{detail}, after its segment was answered")
         self._flow.note()
-        self._note_progress(posture.stamp_ns)
+        for segment in self._open.values():
+            if segment.start_ns is None:
+                segment.start_ns = posture.stamp_ns
+            if segment.state is State.OPEN and segment.start_ns <= posture.stamp_ns:
+                segment.waiting_since_ns = None
         return frame, closed + self._settle()
 
     def mark(self, mark: Segment) -> list[ClosedSegment]:
         """Take a start or end mark; return the segments it closes."""
-        if mark.segment_id not in self._open and self._answered.has(mark):
-            return self._answered.mark_again(mark, self._streams.newest_ns or 0)
-        if mark.stamp_ns is None and self._beginning.is_settling:
+        state = self._state(mark)
+        if state not in (State.NEW, State.OPEN, State.ENDED):
+            used_up = self._answered.mark_again(mark, self._stamp_ns(mark) or 0)
+            return [self._rejected(mark, "segment_id reused")] if used_up else []
+        is_settling = self._is_resumed and (self._now_ns < 0 or self._now_ns - self._first_tick_ns < SETTLING_NS)
+        if mark.stamp_ns is None and is_settling:
             self._answered.remember(mark.segment_id, None, None)
-            return [OpenSegment.of(mark, self._streams.newest_ns).rejected(UNPLACED)]
-        return self._start(mark) if mark.kind == "start" else self._end(mark)
+            return [self._rejected(mark, UNPLACED)]
+        match state, mark.kind:
+            case State.NEW, "start":
+                return self._start(mark)
+            case State.NEW, "end":
+                self._answered.remember(mark.segment_id, None, self._stamp_ns(mark) or 0)
+                return [self._rejected(mark, "end without start")]
+            case State.OPEN, "end":
+                return self._end(self._open[mark.segment_id], self._stamp_ns(mark))
+        self._counters.reject("duplicate_mark", f"second {mark.kind} of {mark.segment_id!r}")
+        return []
 
     def decline(self, mark: Segment, reason: str) -> list[ClosedSegment]:
         """Reject a segment at its first mark, unless it is open already; return the segments that this closes."""
-        if mark.segment_id in self._open:
-            return self.mark(mark)
-        if self._answered.has(mark):
-            return []
-        self._answered.remember(mark.segment_id, None, None)
-        return [
-            OpenSegment.of(mark, self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns).rejected(reason)
-        ]
+        match self._state(mark):
+            case State.OPEN | State.ENDED:
+                return self.mark(mark)
+            case State.NEW:
+                self._answered.remember(mark.segment_id, None, None)
+                return [self._rejected(mark, reason)]
+        return []
 
     def tick(self, tick: Tick) -> list[ClosedSegment]:
         """Close the segments that have waited too long: 2 s for the last frames, a longest segment for an end mark."""
         self._flow.tick(tick.monotonic_ns)
-        self._beginning.tick(tick.monotonic_ns)
+        self._now_ns = tick.monotonic_ns
+        self._first_tick_ns = self._now_ns if self._first_tick_ns < 0 else self._first_tick_ns
         closed = []
         for segment in list(self._open.values()):
             if segment.waiting_since_ns is None:
                 segment.waiting_since_ns = tick.monotonic_ns
             waited_ns = tick.monotonic_ns - segment.waiting_since_ns
-            if segment.end_ns is None and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
-                closed.append(self._reject(segment, why_no_end(segment, self._streams)))
-            elif segment.end_ns is not None and waited_ns > MAX_SKEW_NS and self._may_come_no_more(segment):
-                closed.append(self._close(segment))
+            if segment.state is State.OPEN and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
+                closed.append(self._reject(segment, self._why_no_end(segment)))
+            if segment.state is State.ENDED and waited_ns > MAX_SKEW_NS:
+                newest_ns = self.streams.newest_ns
+                passed = newest_ns is not None and newest_ns >= segment.latest_ns
+                if passed or self._flow.ended(segment.waiting_since_ns, MAX_SKEW_NS):
+                    closed.append(self._close(segment))
         return closed
-
-    def _may_come_no_more(self, segment: OpenSegment) -> bool:
-        """Tell whether a segment that has waited for its last frames is to be closed without them."""
-        assert segment.end_ns is not None and segment.waiting_since_ns is not None
-        passed = self._streams.newest_ns is not None and self._streams.newest_ns >= segment.end_ns
-        return passed or self._flow.ended(segment.waiting_since_ns, MAX_SKEW_NS)
 
     def open_at(self, agent: int, stamp_ns: int) -> list[OpenSegment]:
         """List the open segments of an agent that hold this instant."""
         return [segment for segment in self._open.values() if segment.known_agent == agent and segment.holds(stamp_ns)]
-
-    def search_of(self, agent: int) -> Search | None:
-        """Return the search for unmarked actions in an agent's stream, if there is one."""
-        stream = self._streams.of(agent)
-        return None if stream is None else stream.search
 
     def is_marked(self, agent: int, start_ns: int, end_ns: int) -> bool:
         """Tell whether a marked segment, open or answered, shares a frame with these bounds.
@@ -138,78 +145,42 @@ class Segmenter:
             for segment in chain(self._open.values(), self._marked)
         )
 
-    def cut(self, found: OpenSegment) -> ClosedSegment:
-        """Close a segment that nobody marked, of a known agent whose frames have come up to its end."""
-        assert found.known_agent is not None
-        stream = self._streams.of(found.known_agent)
-        return found.rejected("no person") if stream is None else stream.cut(found)
+    def _state(self, mark: Segment) -> State:
+        segment = self._open.get(mark.segment_id)
+        return self._answered.state(mark) if segment is None else segment.state
 
-    def frames_between(self, agent: int, start_ns: int, end_ns: int) -> list[Frame]:
-        """List an agent's frames with start <= stamp <= end."""
-        stream = self._streams.of(agent)
-        return [] if stream is None else stream.between(start_ns, end_ns)
+    def _stamp_ns(self, mark: Segment) -> int | None:
+        """Return a mark's stamp; of a mark without one the newest stamp of a frame, None where there is none."""
+        return self.streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns
 
-    def frames_of(self, segment: OpenSegment) -> list[Frame]:
-        """List the frames an open segment holds so far."""
-        if segment.known_agent is None or segment.start_ns is None:
-            return []
-        return self.frames_between(segment.known_agent, segment.start_ns, segment.end_ns or FAR_FUTURE_NS)
-
-    def _note_progress(self, stamp_ns: int) -> None:
-        """Start segments that wait for the first posture; restart the wait for an end mark while postures come."""
-        for segment in self._open.values():
-            if segment.start_ns is None:
-                segment.start_ns = stamp_ns
-            if segment.end_ns is None and segment.start_ns <= stamp_ns:
-                segment.waiting_since_ns = None
+    def _rejected(self, mark: Segment, reason: str) -> ClosedSegment:
+        return OpenSegment.of(mark, self._stamp_ns(mark)).rejected(reason)
 
     def _settle(self) -> list[ClosedSegment]:
         """Determine agents where that is possible; close the segments whose end is reached and those too long."""
         closed = []
         for segment in list(self._open.values()):
             if segment.known_agent is None and segment.start_ns is not None:
-                segment.nearest = self._streams.nearest(segment.start_ns, segment.latest_ns)
-            if segment.end_ns is not None:
-                if self._is_reached(segment) and self._why_incomplete(segment) is None:
-                    closed.append(self._close(segment))
-            elif segment.is_too_long(self._streams.newest_ns):
+                segment.nearest = self.streams.nearest(segment.start_ns, segment.latest_ns)
+            agent = segment.known_agent
+            reached = agent is not None and self.streams.reached(agent, segment.latest_ns)
+            if segment.state is State.OPEN and segment.is_too_long(self.streams.newest_ns):
                 closed.append(self._reject(segment, NO_END))
+            elif segment.state is State.ENDED and reached and self._why_incomplete(segment) is None:
+                closed.append(self._close(segment))
         return closed
 
-    def _is_reached(self, segment: OpenSegment) -> bool:
-        """Tell whether the acting person's stream has reached the end of a segment that has one."""
-        assert segment.end_ns is not None
-        return segment.known_agent is not None and self._streams.reached(segment.known_agent, segment.end_ns)
-
-    def _why_incomplete(self, segment: OpenSegment) -> str | None:
-        """Return why a segment that has its end mark lacks frames, which may yet come on other people's keys."""
-        assert segment.end_ns is not None
-        return why_incomplete(self._streams, segment.start_ns or 0, segment.end_ns, self._beginning.is_resumed)
-
     def _start(self, mark: Segment) -> list[ClosedSegment]:
-        if mark.segment_id in self._open:
-            self._counters.reject("duplicate_mark", f"second start of {mark.segment_id!r}")
-            return []
-        start_ns = self._streams.newest_ns if mark.stamp_ns is None else mark.stamp_ns
-        segment = OpenSegment.of(mark, start_ns)
+        segment = OpenSegment.of(mark, self._stamp_ns(mark))
         if len(self._open) >= MOST_OPEN_SEGMENTS:
-            self._answered.remember(mark.segment_id, start_ns, None)
+            self._answered.remember(mark.segment_id, segment.start_ns, None)
             self._counters.reject("too_many_segments", f"{mark.segment_id!r} beside {len(self._open)} open ones")
             return [segment.rejected(f"too many open segments: {MOST_OPEN_SEGMENTS} at the most")]
         self._open[mark.segment_id] = segment
         return self._settle()
 
-    def _end(self, mark: Segment) -> list[ClosedSegment]:
-        segment = self._open.get(mark.segment_id)
-        if segment is None:
-            end_ns = mark.stamp_ns if mark.stamp_ns is not None else self._streams.newest_ns or 0
-            self._answered.remember(mark.segment_id, None, end_ns)
-            return [OpenSegment.of(mark, end_ns, end_ns).rejected("end without start")]
-        if segment.end_ns is not None:
-            self._counters.reject("duplicate_mark", f"second end of {mark.segment_id!r}")
-            return []
-        newest_ns = self._streams.newest_ns if self._streams.newest_ns is not None else segment.start_ns or 0
-        segment.end_ns = newest_ns if mark.stamp_ns is None else mark.stamp_ns
+    def _end(self, segment: OpenSegment, end_ns: int | None) -> list[ClosedSegment]:
+        segment.end_ns = (segment.start_ns or 0) if end_ns is None else end_ns
         segment.nearest = segment.waiting_since_ns = None
         if segment.start_ns is not None and segment.end_ns < segment.start_ns:
             return [self._reject(segment, "end before start")]
@@ -219,24 +190,37 @@ class Segmenter:
 
     def _close(self, segment: OpenSegment) -> ClosedSegment:
         """Close a segment that has its end mark, with the frames that have come."""
-        assert segment.end_ns is not None
-        start_ns = segment.start_ns if segment.start_ns is not None else 0
+        start_ns, end_ns = segment.start_ns or 0, segment.latest_ns
         if (reason := self._why_incomplete(segment)) is not None:
             return self._reject(segment, reason)
-        first = self._streams.first(start_ns, segment.end_ns) if segment.start_ns is not None else None
-        agent = segment.known_agent if segment.known_agent is not None or first is None else first[1]
-        stream = None if agent is None else self._streams.of(agent)
-        if stream is None or agent is None:
-            cause = self._streams.first_reason(start_ns, segment.end_ns) if agent is None else None
+        agent = segment.known_agent
+        if agent is None and segment.start_ns is not None:
+            first = self.streams.first(start_ns, end_ns)
+            agent = None if first is None else first[1]
+        stream = None if agent is None else self.streams.of(agent)
+        if stream is None:
+            cause = self.streams.first_reason(start_ns, end_ns) if agent is None else None
             reason = "no person" if cause is None else "no person with a usable frame"
             return self._reject(segment, with_cause(reason, cause))
-        if segment.end_ns - start_ns > MAX_SEGMENT_NS:
+        if end_ns - start_ns > MAX_SEGMENT_NS:
             return self._reject(segment, NO_END)
-        if stream.newest_ns < segment.end_ns:
-            self._late.append((agent, range(start_ns, segment.end_ns + 1)))
+        if stream.newest_ns < end_ns:
+            stream.mark_answered(start_ns, end_ns)
         segment.nearest = agent
         self._forget(segment)
         return stream.cut(segment)
+
+    def _why_incomplete(self, segment: OpenSegment) -> str | None:
+        """Return why a segment that has its end mark lacks frames; None where it has enough."""
+        return self.streams.why_incomplete(segment.start_ns or 0, segment.latest_ns, self._is_resumed)
+
+    def _why_no_end(self, segment: OpenSegment) -> str:
+        """Return the reason for which a segment is given up whose end mark has not come."""
+        newest_ns = self.streams.newest_ns
+        if newest_ns is None or segment.start_ns is None or newest_ns < segment.start_ns:
+            return "start without end: no frame came after the start"
+        elapsed_s = (newest_ns - segment.start_ns) / SECOND_NS
+        return f"start without end: the frames ended {elapsed_s:.1f} s after the start"
 
     def _reject(self, segment: OpenSegment, reason: str) -> ClosedSegment:
         self._forget(segment)
@@ -250,20 +234,17 @@ class Segmenter:
 
     def _restart(self, session_id: str) -> list[ClosedSegment]:
         """Close all segments and forget all frames where the session is another one than before."""
-        if session_id == self._session:
+        before, self._session = self._session, session_id
+        if before in (None, session_id):
             return []
-        first, self._session = self._session is None, session_id
-        if first and self._beginning.is_of(session_id):
-            return []
-        closed = [] if first else self._close_all("the source started anew")
-        self._streams.clear()
+        closed = [] if self.streams.newest_ns is None else self._close_all()
+        self.streams.clear()
         self._answered.end_session()
         self._marked.clear()
-        self._late.clear()
         return closed
 
-    def _close_all(self, reason: str) -> list[ClosedSegment]:
+    def _close_all(self) -> list[ClosedSegment]:
         return [
-            self._close(segment) if segment.end_ns is not None else self._reject(segment, reason)
+            self._reject(segment, "the source started anew") if segment.state is State.OPEN else self._close(segment)
             for segment in list(self._open.values())
         ]

@@ -1,9 +1,10 @@
-"""Segments, open and closed.
+"""Segments: marked, found and closed.
 
 A segment is the frames with start <= stamp <= end; which belong to it is decided by stamps alone.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from enum import Enum
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.messages import Hand, Segment
@@ -11,6 +12,26 @@ from som_classifier.frames import Frame
 
 LONGEST_WHY = 500
 """Characters of a frame's reason that a segment's reason quotes: a source may send a text of any length."""
+
+
+class State(Enum):
+    """How far the segment of an id has come. `Segmenter` makes each transition in the method that is named here.
+
+    - `NEW` → `OPEN` by a start mark, `ANSWERED` by a mark that cannot be used: `Segmenter.mark`
+    - `OPEN` → `ENDED` by an end mark: `Segmenter.mark`
+    - `OPEN`, `ENDED` → `ANSWERED` by frames: `Segmenter._settle`; by waiting: `Segmenter.tick`; by a restart of the
+      source: `Segmenter._close_all`
+    - `ANSWERED` → `USED_UP` by another mark: `AnsweredSegments.mark_again`
+    - `ANSWERED`, `USED_UP` → `FORMER` by another session: `AnsweredSegments.end_session`
+    - `FORMER` → `NEW` by a mark that is not one of the former segment: `AnsweredSegments.state`
+    """
+
+    NEW = "no mark has come"
+    OPEN = "its end mark is awaited"
+    ENDED = "its last frames are awaited"
+    ANSWERED = "it is answered"
+    USED_UP = "it is answered, and its id was used for another segment, which is rejected"
+    FORMER = "it was answered in an earlier session of the source, so another segment may have its id"
 
 
 @dataclass
@@ -31,16 +52,21 @@ class OpenSegment:
     segment_id: str
     start_ns: int | None
     agent: int | None
-    hand: Hand | None
-    label: str | None
+    hand: Hand | None = None
+    label: str | None = None
     end_ns: int | None = None
     nearest: int | None = None
     waiting_since_ns: int | None = None
 
     @classmethod
-    def of(cls, mark: Segment, start_ns: int | None, end_ns: int | None = None) -> "OpenSegment":
+    def of(cls, mark: Segment, start_ns: int | None) -> "OpenSegment":
         """Return the open segment of a mark."""
-        return cls(mark.segment_id, start_ns, mark.agent, mark.hand, mark.label, end_ns)
+        return cls(mark.segment_id, start_ns, mark.agent, mark.hand, mark.label)
+
+    @property
+    def state(self) -> State:
+        """`OPEN` until the end mark, then `ENDED`."""
+        return State.OPEN if self.end_ns is None else State.ENDED
 
     @property
     def known_agent(self) -> int | None:
@@ -95,21 +121,12 @@ class ClosedSegment:
     segment_id: str
     start_ns: int
     end_ns: int
-    agent: int = 0
-    hand: Hand | None = None
-    label: str | None = None
-    frames: list[Frame] = field(default_factory=list)
-    missed: int = 0
-    reason: str | None = None
-
-
-def why_no_recognition(frames: list[Frame]) -> str | None:
-    """Return the reason for which a segment's frames cannot be recognised; None where one is valid."""
-    if not frames:
-        return "no person"
-    if not any(frame.valid for frame in frames):
-        return with_cause("no usable frame", next((frame.reason for frame in frames if frame.reason is not None), None))
-    return None
+    agent: int
+    hand: Hand | None
+    label: str | None
+    frames: list[Frame]
+    missed: int
+    reason: str | None
 
 
 def with_cause(reason: str, cause: str | None) -> str:

@@ -1,17 +1,17 @@
-"""Each agent's frames in order, kept for as long as the longest segment reaches back."""
+"""Each agent's frames in order, kept for as long as the longest segment reaches back, and which of them are lost."""
 
-from collections import deque
-from collections.abc import Callable, Iterator
-from itertools import chain
+from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS, MOST_FRAMES, MOST_STREAMS
+from actum.losses import StreamBuffer, longest_loss_s
 from actum.messages import Posture
-from actum.node import Counters
+from actum.node import SECOND_NS, Counters
 from actum.stamps import LostFrames, Order, StampGuard
 from som_classifier.frames import Frame, frame_of
 from som_classifier.kinematics import KinematicsFilter
-from som_classifier.segments import ClosedSegment, OpenSegment, why_no_recognition
+from som_classifier.segments import ClosedSegment, OpenSegment, with_cause
 from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
 
 Encode = Callable[[Frame], Any]
@@ -20,22 +20,24 @@ Encode = Callable[[Frame], Any]
 MEMORY_NS = MAX_SEGMENT_NS + MAX_SKEW_NS
 """Frames are kept for this long (ns), so that a segment of any length is whole when its late end mark comes."""
 
+BEFORE_NS = SECOND_NS
+"""How long before a segment frames are looked at (ns): the one before it tells whether the next one follows it."""
 
 FAR_FUTURE_NS = 2**62
 """Stands for the end of what has none: later than any stamp."""
 
 
-class Stream:
-    """One agent's postures, stamps rising.
+class Stream(StreamBuffer[Frame]):
+    """One agent's frames, stamps rising.
 
     Attributes:
-        search: finds the actions in it that nobody marked; None where a stream is only to be cut by marks.
+        search: finds the actions in it that nobody marked.
     """
 
-    def __init__(self, encode: Encode | None = None, search: Search | None = None) -> None:
+    def __init__(self, encode: Encode | None, search: Search) -> None:
+        super().__init__(MEMORY_NS)
         self.search = search
-        self._frames: deque[Frame] = deque()
-        self._order = StampGuard()
+        self._guard = StampGuard()
         self._lost = LostFrames()
         self._smoothing = KinematicsFilter()
         self._encode = encode
@@ -43,71 +45,41 @@ class Stream:
     def use(self, encode: Encode) -> None:
         """Encode all frames, those kept and those to come, by this encoder."""
         self._encode = encode
-        for frame in self._frames:
+        for frame in self:
             self._encode_valid(frame)
-
-    @property
-    def newest_ns(self) -> int:
-        """The newest stamp, -1 before the first."""
-        return self._frames[-1].stamp_ns if self._frames else -1
 
     def add(self, posture: Posture) -> tuple[Order, Frame | None]:
         """Keep the next posture as a frame; None for a stale one, which is not kept. A restart forgets the others."""
-        order = self._order.judge(posture.stamp_ns)
+        order = self._guard.judge(posture.stamp_ns)
         if order is Order.STALE:
             return order, None
         if order is Order.RESTART:
-            self._frames.clear()
-            if self.search is not None:
-                self.search.restart()
+            self.clear()
+            self.search.restart()
         frame = frame_of(posture, self._lost.before(posture.seq, order), self._smoothing)
         self._encode_valid(frame)
-        self._frames.append(frame)
-        while self._frames[0].stamp_ns < frame.stamp_ns - MEMORY_NS:
-            self._frames.popleft()
+        self.append(frame)
         return order, frame
-
-    def __len__(self) -> int:
-        return len(self._frames)
-
-    def let_go(self) -> None:
-        """Forget the oldest frame."""
-        self._frames.popleft()
 
     def _encode_valid(self, frame: Frame) -> None:
         if self._encode is not None and frame.valid:
             frame.activity = self._encode(frame)
 
-    def between(self, start_ns: int, end_ns: int) -> list[Frame]:
-        """List the frames with start <= stamp <= end, in order."""
-        newest_first = []
-        for frame in reversed(self._frames):
-            if frame.stamp_ns < start_ns:
-                break
-            if frame.stamp_ns <= end_ns:
-                newest_first.append(frame)
-        return newest_first[::-1]
-
-    def missed_after(self, end_ns: int) -> int:
-        """Return how many frames were lost between the last frame before `end_ns` and the next one; 0 where unknown."""
-        following = None
-        for frame in reversed(self._frames):
-            if frame.stamp_ns == end_ns:
-                return 0
-            if frame.stamp_ns < end_ns:
-                break
-            following = frame
-        return following.missed if following is not None else 0
-
-    def __iter__(self) -> Iterator[Frame]:
-        return iter(self._frames)
-
     def cut(self, segment: OpenSegment) -> ClosedSegment:
         """Close a segment that has an end, with those of its frames that have come."""
         assert segment.end_ns is not None
         frames = self.between(segment.start_ns or 0, segment.end_ns)
-        missed = sum(frame.missed for frame in frames) + self.missed_after(segment.end_ns)
-        return segment.closed(frames, missed, why_no_recognition(frames))
+        reason = None
+        if not any(frame.valid for frame in frames):
+            cause = next((frame.reason for frame in frames if frame.reason is not None), None)
+            reason = with_cause("no usable frame", cause) if frames else "no person"
+        missed = sum(frame.missed for frame in frames) + self._missed_after(segment.end_ns)
+        return segment.closed(frames, missed, reason)
+
+    def _missed_after(self, end_ns: int) -> int:
+        """Return how many frames were lost between the last frame before `end_ns` and the next one; 0 where unknown."""
+        following = self.between(end_ns, FAR_FUTURE_NS)
+        return following[0].missed if following and following[0].stamp_ns > end_ns else 0
 
 
 class Streams:
@@ -128,18 +100,13 @@ class Streams:
         self._encoders, self._plan = encoders, plan
         for stream in self._streams.values():
             stream.use(encoders())
-            if stream.search is not None:
-                stream.search.use(plan)
+            stream.search.use(plan)
 
     def adjust(self, plan: SearchPlan) -> None:
         """Search every agent's frames by another plan for the same model."""
         self._plan = plan
         for stream in self._streams.values():
-            if stream.search is not None:
-                stream.search.adjust(plan)
-
-    def __iter__(self) -> Iterator[Frame]:
-        return chain.from_iterable(self._streams.values())
+            stream.search.adjust(plan)
 
     def of(self, agent: int) -> Stream | None:
         """Return an agent's stream, if there is one."""
@@ -152,16 +119,15 @@ class Streams:
 
     def add(self, posture: Posture) -> tuple[Order, Frame | None]:
         """Keep the next posture of its agent, as `Stream.add` does."""
-        stream = self._streams.pop(posture.agent) if posture.agent in self._streams else self._begun(posture)
+        stream = self._streams.pop(posture.agent, None)
+        if stream is None:
+            stream = Stream(self._encoders() if self._encoders else None, Search(posture, self._plan))
         self._streams[posture.agent] = stream  # behind those heard before it
         order, frame = stream.add(posture)
         if frame is not None:
             self._advance(posture.stamp_ns)
             self._make_room()
         return order, frame
-
-    def _begun(self, posture: Posture) -> Stream:
-        return Stream(self._encoders() if self._encoders else None, Search(posture, self._plan))
 
     def _make_room(self) -> None:
         """Forget the agent silent for longest where there are too many, and the oldest frame where that is."""
@@ -194,13 +160,6 @@ class Streams:
         first = self.first(start_ns, end_ns)
         return first[1] if first is not None and self.complete(start_ns, first[0]) else None
 
-    def since(self, start_ns: int) -> list[Frame]:
-        """List everybody's frames from a stamp on, stamps rising; where there is none, the newest one before it."""
-        listed = chain.from_iterable(stream.between(start_ns, FAR_FUTURE_NS) for stream in self._streams.values())
-        newest = (stream.between(stream.newest_ns, stream.newest_ns) for stream in self._streams.values())
-        frames = list(listed) or list(chain.from_iterable(newest))
-        return sorted(frames, key=lambda frame: frame.stamp_ns)
-
     def first_reason(self, start_ns: int, end_ns: int) -> str | None:
         """Return the reason of the first frame that the preprocessor could not use; None where there is none."""
         reasons = (
@@ -224,6 +183,36 @@ class Streams:
         linked = all(f.previous_ns is None or f.previous_ns < start_ns or f.previous_ns in arrived_ns for f in frames)
         return linked and all(self.reached(agent, end_ns) for agent in agents)
 
+    def why_incomplete(self, start_ns: int, end_ns: int, resumed: bool) -> str | None:
+        """Return the reason for which frames of a segment are lost; None where enough have come.
+
+        Frames are lost that were captured and have not come, or not to this process.
+
+        Args:
+            start_ns: the segment's start.
+            end_ns: its end.
+            resumed: whether another process was there before this one.
+        """
+        frames = self._since(start_ns - BEFORE_NS)
+        if not frames:
+            return "the classifier was not there: no frame has come since" if resumed else None
+        first, last = frames[0], frames[-1]
+        follows_another = first.previous_ns is not None and first.previous_ns >= start_ns
+        if follows_another and (late_s := longest_loss_s([(start_ns, first.stamp_ns)], start_ns, end_ns)):
+            return f"the classifier was not there: its first frame is {late_s:.1f} s after the start"
+        if lost_s := longest_loss_s([(last.stamp_ns, end_ns)], start_ns, end_ns):
+            return f"frames lost: none came for the last {lost_s:.1f} s of the segment"
+        broken = ((b.stamp_ns, min(then.stamp_ns, end_ns)) for b, then in pairwise(frames) if _is_broken(b, then))
+        lost_s = longest_loss_s(broken, start_ns, end_ns)
+        return None if lost_s is None else f"frames lost: none came for {lost_s:.1f} s of the segment"
+
+    def _since(self, start_ns: int) -> list[Frame]:
+        """List everybody's frames from a stamp on, stamps rising; where there is none, the newest one before it."""
+        streams = self._streams.values()
+        listed = [frame for stream in streams for frame in stream.between(start_ns, FAR_FUTURE_NS)]
+        newest = [frame for stream in streams for frame in stream.between(stream.newest_ns, stream.newest_ns)]
+        return sorted(listed or newest, key=lambda frame: frame.stamp_ns)
+
     def _advance(self, stamp_ns: int) -> None:
         """Advance the newest stamp, and forget agents that are silent.
 
@@ -235,3 +224,10 @@ class Streams:
         for agent, stream in list(self._streams.items()):
             if abs(stream.newest_ns - self.newest_ns) > MEMORY_NS:
                 del self._streams[agent]
+
+
+def _is_broken(before: Frame, then: Frame) -> bool:
+    """Tell whether frames were lost between two, or a service before this one began anew."""
+    if then.previous_ns is None:
+        return before.previous_ns is not None
+    return then.missed > 0 or then.previous_ns > before.stamp_ns

@@ -4,8 +4,6 @@ import math
 
 import pytest
 
-from action_fusion.node import ActionFusion
-from action_fusion.settings import Settings
 from actum.skeletons import INDEX
 from fused import events_of
 from scenes import Scene, acting_on, action, still
@@ -14,11 +12,6 @@ MIRRORED = [-1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
 OF_A_CAMERA = [1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0]
 """Its last row is a perspective projection's."""
 TOUCH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.45))
-
-
-@pytest.fixture
-def node() -> ActionFusion:
-    return ActionFusion(Settings())
 
 
 @pytest.mark.parametrize(

@@ -1,7 +1,5 @@
 """What the fusion answers where it, or the tracker, was not there all the time."""
 
-import pytest
-
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Event
@@ -10,11 +8,6 @@ from fused import events_of
 from scenes import acting_on, action, at, rejected_action
 
 PUSH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65))
-
-
-@pytest.fixture
-def node() -> ActionFusion:
-    return ActionFusion(Settings())
 
 
 def resumed(*before: Event) -> ActionFusion:

@@ -17,11 +17,6 @@ PUSH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65), others={2: (-0.25, 0.0, 0.5
 SKEW_NS = 2 * SECOND_NS
 
 
-@pytest.fixture
-def node() -> ActionFusion:
-    return ActionFusion(Settings())
-
-
 def ticked(node: ActionFusion, seconds: float, since_s: float = 0.0) -> list[Event]:
     """Let time go by in ticks of a tenth of a second."""
     ticks = range(round(10 * since_s), round(10 * (since_s + seconds)) + 1)

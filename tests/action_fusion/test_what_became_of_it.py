@@ -49,7 +49,7 @@ def test_an_empty_reach_has_no_outcome_and_says_why() -> None:
 
 @pytest.mark.parametrize(("displacement", "expected"), [((0.0, 0.04, 0.2), "pushed"), ((0.0, 0.06, 0.2), "lifted")])
 def test_a_table_may_slope_a_little_in_the_cameras_eyes(displacement, expected) -> None:
-    assert outcome(np.array(displacement), 0.03) == expected
+    assert outcome(np.array(displacement), 0.03, has_front=True) == expected
 
 
 def test_without_a_body_away_and_towards_mean_nothing() -> None:

@@ -11,8 +11,8 @@ from actum_model_trainer.evaluation import evaluate
 from handmade import paper_model, pyramid_model
 from people import FRAME_NS
 from performers import mark, performance
+from som_classifier.map_activity import without_repeats
 from som_classifier.model_maps import ModelMaps, PaperMaps, PyramidMaps
-from som_classifier.ordered_vector import without_repeats
 
 Record = Callable[..., Recording]
 

@@ -5,7 +5,7 @@ import pytest
 
 from actum_model_inspector.answered import AnsweredSegment
 from actum_model_inspector.reliability_diagram import bins, calibration_error, labelled_answers, reliability_picture
-from som_classifier.recognition import Recognition
+from som_classifier.model import Recognition
 
 PUSH = Recognition("push", 0.8, {"push": 0.9, "pull": 0.1}, "right_arm", np.zeros((1, 2)))
 

@@ -33,11 +33,14 @@ from som_classifier.model import Model
 from som_classifier.pyramid import SCALE
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.segmenter import Segmenter
-from som_classifier.spotting.completeness import CompletenessHeads, completeness_of_iou
-from som_classifier.spotting.pyramid_spotter import PyramidSpotter
+from som_classifier.spotting.pyramid_spotter import FEWEST_FRAMES, PyramidSpotter
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
-from som_classifier.spotting.windows import FEWEST_FRAMES
+from som_classifier.spotting.spotting_model import (
+    CompletenessHeads,
+    PyramidSpottingMetadata,
+    SpottingModel,
+    completeness_of_iou,
+)
 from unmarked import Scene, bounds_ns, postures, recorded, scene, spotting_model, taught
 
 LABELS = ["lift", "push", "swing"]
@@ -51,7 +54,7 @@ METADATA = PyramidSpottingMetadata(
 def encoded_live(model: Model, of: Scene, lost: frozenset[int] = frozenset()) -> list[Frame]:
     """A scene's frames as the classifier has them; some never come."""
     segmenter = Segmenter(Counters())
-    segmenter.use(lambda: model.encoder().encode)
+    segmenter.streams.use(lambda: model.encoder().encode)
     kept = [each for i, each in enumerate(of.skeletons()) if i not in lost]
     return [frame for each in postures(kept) if (frame := segmenter.posture(each)[0]) is not None]
 

@@ -20,7 +20,7 @@ from model_trainer.job_process import CLAIM, Ended, JobProcess, JobRequest, Prog
 from model_trainer.job_store import JobStore
 from performers import TINY
 from recognisers import tiny_model
-from som_classifier.watched_model import WatchedModel
+from som_classifier.model_loading import WatchedModel
 from teaching import GOGGLINGS, WAVES, Teacher
 
 

@@ -1,7 +1,7 @@
 """What is told of what was found: nothing that is switched off, nothing too soon."""
 
 from actum.node import SECOND_NS
-from som_classifier.spotting.admission import Admission
+from som_classifier.spotting.search import Admission
 from som_classifier.spotting.spotted import SpottingOptions
 
 

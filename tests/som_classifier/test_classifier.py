@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from actum.messages import Action, Message, Posture, Segment, Skeleton
-from actum.node import Counters, Tick, replay
+from actum.node import Tick, replay
 from actum.skeletons import INDEX
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.samples import SegmentSample
@@ -23,7 +23,9 @@ from som_classifier.model import Model
 from som_classifier.node import POLL_TICKS, SomClassifier
 from som_classifier.presets import Preset
 from som_classifier.pyramid_model import PyramidModel
+from som_classifier.spotting.search import NO_SEARCH, Search
 from som_classifier.streams import Stream
+from spotters import Box
 from wire import Wire, without_seq
 
 each_preset = pytest.mark.parametrize("preset", TINY_OF_EACH_KIND, ids=lambda preset: preset.name)
@@ -66,17 +68,6 @@ def always(preset: Preset) -> list[Action]:
 
 def finals(actions: Iterable[Action]) -> list[Action]:
     return [action for action in actions if action.final]
-
-
-class Box:
-    """A place where a model may be put."""
-
-    def __init__(self) -> None:
-        self.model: Model | None = None
-
-    def poll(self, counters: Counters) -> Model | None:
-        model, self.model = self.model, None
-        return model
 
 
 @each_preset
@@ -133,8 +124,8 @@ def test_maps_and_trace_come_with_final_answers_where_asked_for(preset: Preset) 
     assert all(action.maps is action.trace is None for action in always(preset))
 
 
-def frames_of(model: Model, postures: Iterable[Posture]) -> list[Frame]:
-    stream = Stream(model.encoder().encode)
+def frames_of(model: Model, postures: Sequence[Posture]) -> list[Frame]:
+    stream = Stream(model.encoder().encode, Search(postures[0], NO_SEARCH))
     return [frame for posture in postures if (frame := stream.add(posture)[1]) is not None]
 
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum.messages import AUTO, Action, Message, Posture, Segment
-from actum.node import SECOND_NS, Counters, Tick, replay
+from actum.node import SECOND_NS, Tick, replay
 from people import FRAME_NS, reaching, skeleton
 from performers import TINY_PAPER
 from pose_preprocessor.node import PosePreprocessor
@@ -23,7 +23,7 @@ from som_classifier.pyramid_model import PyramidModel
 from som_classifier.segmentation import CANNOT, DEFAULT, NO_BACKGROUND, Segmentation
 from som_classifier.settings import Settings
 from som_classifier.spotting.spotted import SpottedSegment, SpottingOptions
-from spotters import Beats, beating, finding, spotting
+from spotters import Beats, Box, beating, finding, spotting
 from wire import Wire, packed, without_seq
 
 BESIDE_M = np.array([0.8, 0.0, 0.1])
@@ -196,17 +196,6 @@ def test_a_person_who_vanishes_in_the_middle_leaves_nothing_behind() -> None:
     put = put_by(node, [*gone, *[Tick(i * SECOND_NS) for i in range(80)], *back])
     assert [start_ns >= back[0].stamp_ns for _, start_ns, _ in found(put)] == [True, True]
     assert not node.counters.rejects
-
-
-class Box:
-    """A place where a model may be put."""
-
-    def __init__(self) -> None:
-        self.model: Model | None = None
-
-    def poll(self, counters: Counters) -> Model | None:
-        model, self.model = self.model, None
-        return model
 
 
 def test_another_model_goes_on_with_a_search_of_its_own_and_with_the_numbers() -> None:

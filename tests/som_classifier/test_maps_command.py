@@ -7,9 +7,8 @@ from numpy.typing import NDArray
 from actum.commands import Refusal
 from recognisers import tiny_model
 from som_classifier.frames import Frame
-from som_classifier.model import Arrays, Model
+from som_classifier.model import Arrays, Model, Recognition
 from som_classifier.node import SomClassifier
-from som_classifier.recognition import Recognition
 
 
 class Encoding:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from actum.skeletons import INDEX
-from som_classifier.movement import movement_m
+from som_classifier.kinematics import movement_m
 
 HAND = INDEX["right_hand"]
 WAY_M = 0.6

@@ -10,8 +10,7 @@ from handmade import paper_model
 from people import STANDING, lacking
 from som_classifier.frames import Frame
 from som_classifier.kinematics import Kinematics
-from som_classifier.map_activity import NO_WINNER, MapActivity
-from som_classifier.ordered_vector import ordered_vector
+from som_classifier.map_activity import NO_WINNER, MapActivity, ordered_vector
 from som_classifier.paper_model import PaperModel
 from som_classifier.supervised import SupervisedLayer
 

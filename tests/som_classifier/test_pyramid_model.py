@@ -17,10 +17,10 @@ from som_classifier.attention import PART_NAMES, attended_part
 from som_classifier.frame_activity import FrameActivity, known_joint_share
 from som_classifier.frames import Frame
 from som_classifier.handedness import mirrored
-from som_classifier.movement import movement_m
+from som_classifier.kinematics import movement_m
+from som_classifier.model import Recognition
 from som_classifier.pyramid import SCALE, Pyramid
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.recognition import Recognition
 from som_classifier.stage_discriminants import familiarity_of
 
 SAMPLES = tiny_samples()

@@ -8,10 +8,9 @@ from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
-from som_classifier.spotting.completeness import CompletenessHeads
 from som_classifier.spotting.pyramid_spotter import PyramidSpotter
 from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, SpottingOptions
-from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
+from som_classifier.spotting.spotting_model import CompletenessHeads, PyramidSpottingMetadata, SpottingModel
 
 MS = SECOND_NS // 1000
 Answers = Mapping[tuple[int, int], float]

@@ -13,12 +13,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum.messages import Action, Message, Posture, Segment
-from actum.node import SECOND_NS, Counters, Tick
+from actum.node import SECOND_NS, Tick
 from actum.stamps import RESTART_AFTER
 from people import FRAME_NS
 from som_classifier.kinematics import GAP_NS
-from som_classifier.model import Model
 from som_classifier.node import POLL_TICKS, SomClassifier
+from spotters import Box
 from unmarked import Scene, bounds_ns, postures, scene, spotting_model
 from wire import without_seq
 
@@ -193,17 +193,6 @@ def test_after_a_clock_that_steps_back_the_search_begins_anew(at: int) -> None:
     put = put_by(node, back)
     assert answers(put) == answers(put_by(SomClassifier(spotting_model()), back[RESTART_AFTER - 1 :]))
     assert len(answers(put)) == len(acting().acts)
-
-
-class Box:
-    """A place where a model may be put."""
-
-    def __init__(self) -> None:
-        self.model: Model | None = None
-
-    def poll(self, counters: Counters) -> Model | None:
-        model, self.model = self.model, None
-        return model
 
 
 @pytest.mark.parametrize("act", range(3))

@@ -14,15 +14,16 @@ from actum.node import SECOND_NS
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.segmentation import NO_BACKGROUND, Segmentation
-from som_classifier.spotting.completeness import (
+from som_classifier.spotting.spotted import SpottingOptions
+from som_classifier.spotting.spotting_model import (
     NONE_BELOW_IOU,
     WHOLE_FROM_IOU,
     CompletenessHeads,
+    PyramidSpottingMetadata,
+    SpottingModel,
     completeness_of_iou,
     iou_of_completeness,
 )
-from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
 from unmarked import spotting_model
 
 METADATA = PyramidSpottingMetadata(

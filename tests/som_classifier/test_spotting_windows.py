@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
 from som_classifier.kinematics import GAP_NS
-from som_classifier.spotting.windows import FEWEST_FRAMES, RecentFrames
+from som_classifier.spotting.pyramid_spotter import FEWEST_FRAMES, RecentFrames
 
 MS = SECOND_NS // 1000
 DURATIONS_S = (0.5, 1.0, 2.0)

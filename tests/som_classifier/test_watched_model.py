@@ -9,7 +9,7 @@ import pytest
 from actum.node import Counters
 from performers import TINY
 from recognisers import tiny_model
-from som_classifier.watched_model import WatchedModel
+from som_classifier.model_loading import WatchedModel
 
 
 def test_a_file_is_loaded_once_and_again_when_it_changes(tmp_path: Path) -> None:

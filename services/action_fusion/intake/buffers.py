@@ -1,11 +1,11 @@
 """The recent past of the streams, long enough for the longest segment and the latest action."""
 
-from collections import deque
 from itertools import pairwise
-from typing import Generic, TypeVar
+from typing import TypeVar
 
 from action_fusion.intake.stream_samples import Sample
 from actum.limits import MAX_SEGMENT_NS
+from actum.losses import StreamBuffer
 from actum.messages import MOST_OBJECTS, Objects
 from actum.node import SECOND_NS, Counters
 from actum.stamps import Order, StampGuard
@@ -20,9 +20,6 @@ MEMORY_NS = 10 * SECOND_NS
 LATEST_ACTION_NS = 4 * SECOND_NS
 """Longest delay of an action after its segment's end: two seconds of waiting, two of skew between streams."""
 
-MOST_ANSWERED = 16
-"""Number of answered segments that are remembered, to recognise samples that come too late for them."""
-
 KEPT_NS = MAX_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
 """How long samples are kept: for the longest segment, the time before it, and the wait for its action."""
 
@@ -30,60 +27,28 @@ KEPT_NS = MAX_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
 S = TypeVar("S", bound=Sample)
 
 
-class Buffer(Generic[S]):
+class Buffer(StreamBuffer[S]):
     """Samples of one stream with rising stamps, the last `KEPT_NS` of them."""
 
     def __init__(self) -> None:
-        self._samples: deque[S] = deque()
+        super().__init__(KEPT_NS)
         self._guard = StampGuard()
-        self._answered: deque[range] = deque(maxlen=MOST_ANSWERED)
-
-    def __len__(self) -> int:
-        return len(self._samples)
-
-    def let_go(self) -> None:
-        """Forget the oldest sample."""
-        self._samples.popleft()
-
-    @property
-    def newest_ns(self) -> int:
-        """Stamp of the newest sample, -1 where there is none."""
-        return self._samples[-1].stamp_ns if self._samples else -1
 
     def judge(self, sample: S) -> Order:
         """Judge a sample's order in the stream; a new session counts as a restart only if the stamp went back."""
         order = self._guard.judge(sample.stamp_ns, sample.session_id)
         return Order.NEXT if sample.stamp_ns > self.newest_ns else order
 
-    def append(self, sample: S) -> None:
-        """Add the next sample, and drop what is too old."""
-        self._samples.append(sample)
-        while self._samples[0].stamp_ns < sample.stamp_ns - KEPT_NS:
-            self._samples.popleft()
-
-    def clear(self) -> None:
-        """Forget everything, after a restart."""
-        self._samples.clear()
-        self._answered.clear()
-
-    def mark_answered(self, start_ns: int, end_ns: int) -> None:
-        """Remember that a segment has been answered, so that its later samples are too late."""
-        self._answered.append(range(start_ns, end_ns + 1))
-
-    def is_too_late(self, stamp_ns: int) -> bool:
-        """Tell whether a sample belongs to a segment that has been answered without it."""
-        return any(stamp_ns in segment for segment in self._answered)
-
     def stamps_since(self, start_ns: int) -> list[int]:
         """List the stamps from `MEMORY_NS` before a segment's start on."""
-        return [sample.stamp_ns for sample in self._samples if sample.stamp_ns >= start_ns - MEMORY_NS]
+        return [sample.stamp_ns for sample in self if sample.stamp_ns >= start_ns - MEMORY_NS]
 
     def of_segment(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples of a segment and of `MEMORY_NS` before it, in the session of the last sample.
 
         Samples before a gap of `LOOK_BACK_NS` or more that precedes the segment are left out.
         """
-        window = [sample for sample in self._samples if start_ns - MEMORY_NS <= sample.stamp_ns <= end_ns]
+        window = self.between(start_ns - MEMORY_NS, end_ns)
         listed = [sample for sample in window if sample.session_id == window[-1].session_id]
         stamps_ns = [sample.stamp_ns for sample in listed]
         after_gap = [

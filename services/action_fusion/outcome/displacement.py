@@ -57,7 +57,7 @@ def described(track: ObjectTrack | None, evidence: Evidence) -> dict[str, Any]:
     }
 
 
-def outcome(displacement_m: Array, moved_m: float, has_front: bool = True) -> str:
+def outcome(displacement_m: Array, moved_m: float, has_front: bool) -> str:
     """Name the outcome for the object: lifted, put down, pushed, pulled, moved or unmoved.
 
     Args:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array
-from som_classifier.spotting.completeness import CompletenessHeads
+from som_classifier.spotting.spotting_model import CompletenessHeads
 
 
 def with_common(completeness: Array) -> Array:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
 from actum_model_trainer.discriminants import SMALLEST_LENGTH2
-from som_classifier.spotting.completeness import CompletenessHeads
+from som_classifier.spotting.spotting_model import CompletenessHeads
 
 
 @dataclass(frozen=True, eq=False)

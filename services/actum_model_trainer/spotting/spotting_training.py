@@ -23,9 +23,9 @@ from actum_model_trainer.spotting.training_windows import training_windows, true
 from actum_model_trainer.spotting.window_vectors import trained_heads
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
+from som_classifier.spotting.pyramid_spotter import FEWEST_FRAMES
 from som_classifier.spotting.spotting_model import PyramidSpottingMetadata, SpottingModel
 from som_classifier.spotting.spotting_preset import SpottingPreset
-from som_classifier.spotting.windows import FEWEST_FRAMES
 
 COARSE = 2
 """Intervals between two looks for false alarms to learn from: they last longer, and looking takes most of the time."""

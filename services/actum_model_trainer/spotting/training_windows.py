@@ -11,9 +11,9 @@ from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection
 from actum_model_trainer.samples import LabelledStream
 from som_classifier.kinematics import GAP_NS
-from som_classifier.spotting.completeness import completeness_of_iou
-from som_classifier.spotting.windows import COVERED_SHARE as LIVE_COVERED_SHARE
-from som_classifier.spotting.windows import FEWEST_FRAMES
+from som_classifier.spotting.pyramid_spotter import COVERED_SHARE as LIVE_COVERED_SHARE
+from som_classifier.spotting.pyramid_spotter import FEWEST_FRAMES
+from som_classifier.spotting.spotting_model import completeness_of_iou
 
 JITTERED = 3
 """Windows of each action with both bounds moved a little: no search finds bounds exactly."""

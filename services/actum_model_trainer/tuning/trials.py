@@ -15,9 +15,9 @@ from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import OpenSegment
-from som_classifier.spotting.admission import Admission
-from som_classifier.spotting.search import SearchPlan
+from som_classifier.spotting.search import Admission, SearchPlan
 from som_classifier.spotting.spotted import NOTHING, Spotted, SpottedSegment, Spotter, SpottingOptions
+from som_classifier.streams import Stream
 
 Searched = Sequence[Sequence[Detection]]
 """What was found in each stretch of a person's frames that was searched on its own, in the order of decisions."""
@@ -83,17 +83,17 @@ class _Searches:
         self.stretches: list[list[list[Detection]]] = []
         self._model, self._asked, self._file = model, asked, file
         self._segmenter = Segmenter(self.counters)
-        self._segmenter.use(lambda: model.encoder().encode, SearchPlan(self._next_stretch))
+        self._segmenter.streams.use(lambda: model.encoder().encode, SearchPlan(self._next_stretch))
         self._found: list[tuple[list[Detection], SpottedSegment]] = []
 
     def handle(self, message: Message | Tick) -> list[Message]:
         """Take a posture or a tick; put nothing."""
         if isinstance(message, Posture):
             frame, _ = self._segmenter.posture(message)
-            search = self._segmenter.search_of(message.agent)
-            if frame is not None and search is not None:
-                search.step(frame)
-                self._answer(message)
+            stream = self._segmenter.streams.of(message.agent)
+            if frame is not None and stream is not None:
+                stream.search.step(frame)
+                self._answer(stream, message)
         return []
 
     def _next_stretch(self) -> Spotter:
@@ -101,10 +101,10 @@ class _Searches:
         self.stretches.append([[] for _ in self._asked])
         return _Several(spotters, self.stretches[-1], self._found)
 
-    def _answer(self, posture: Posture) -> None:
+    def _answer(self, stream: Stream, posture: Posture) -> None:
         """Recognise what the newest frame showed as the classifier does, whatever is to be told of it."""
         for into, found in self._found:
-            closed = self._segmenter.cut(OpenSegment("", found.start_ns, posture.agent, None, None, found.end_ns))
+            closed = stream.cut(OpenSegment("", found.start_ns, posture.agent, end_ns=found.end_ns))
             usable = [frame for frame in closed.frames if frame.valid]
             if closed.reason is None and len(usable) >= self._model.min_frames:
                 answer = self._model.recognise(usable, complete=True)

@@ -5,13 +5,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.losses import StreamBuffer
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
-from som_classifier.spotting.completeness import iou_of_completeness
-from som_classifier.spotting.decoding import Candidate
+from som_classifier.kinematics import GAP_NS
 from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, Spotter, SpottingOptions
-from som_classifier.spotting.spotting_model import SpottingModel
-from som_classifier.spotting.windows import RecentFrames
+from som_classifier.spotting.spotting_model import SpottingModel, iou_of_completeness
 
 LEAST_PROBABILITY = 0.5
 """Probability from which an action is said to be going on: that it is must be likelier than that it is not."""
@@ -19,6 +18,45 @@ LEAST_PROBABILITY = 0.5
 
 Pool = Callable[[Sequence[Frame]], NDArray[np.float32]]
 """Returns the pyramid vector (inputs,) of valid frames, each with the activity that the model's encoder gave."""
+
+
+FEWEST_FRAMES = 4
+"""Frames that a window needs: with fewer the pyramid's finest cells hold less than one each."""
+COVERED_SHARE = 0.8
+"""Share of a duration over which there must be frames: after a gap longer windows come back one after the other."""
+
+
+class RecentFrames(StreamBuffer[Frame]):
+    """A person's newest valid frames, without a gap.
+
+    Args:
+        durations_s: of the windows, rising.
+        memory_ns: how long frames are kept, at least as long as the longest window.
+    """
+
+    def __init__(self, durations_s: Sequence[float], memory_ns: int) -> None:
+        super().__init__(memory_ns)
+        self._durations_ns = [round(duration_s * SECOND_NS) for duration_s in durations_s]
+
+    def add(self, frame: Frame) -> bool:
+        """Keep the next valid frame; return whether it follows the one before it without a gap."""
+        follows = len(self) > 0 and 0 < frame.stamp_ns - self.newest_ns <= GAP_NS
+        if not follows:
+            self.clear()
+        self.append(frame)
+        return follows
+
+    def windows(self) -> list[list[Frame]]:
+        """List the windows that end with the newest frame, the shortest first."""
+        frames = list(self)
+        newest_ns, first, found = frames[-1].stamp_ns, len(frames) - 1, []
+        for duration_ns in self._durations_ns:
+            while first > 0 and frames[first - 1].stamp_ns >= newest_ns - duration_ns:
+                first -= 1
+            long_enough = newest_ns - frames[first].stamp_ns >= COVERED_SHARE * duration_ns
+            if len(frames) - first >= FEWEST_FRAMES and long_enough:
+                found.append(frames[first:])
+        return found
 
 
 class PoolingOnce:
@@ -87,11 +125,12 @@ class PyramidSpotter(Spotter):
         candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
         decided = self._decoder.step(now_ns, candidates)
         self._ongoing = self._likeliest(starts_ns.tolist(), now_ns, completeness)
-        return Spotted(tuple(self._segment(each) for each in decided), self._ongoing)
-
-    def _segment(self, candidate: Candidate) -> SpottedSegment:
-        frames = self._recent.between(candidate.start_ns, candidate.end_ns)
-        return SpottedSegment(frames[0].stamp_ns, candidate.end_ns, self._labels[candidate.action])
+        first_ns = [self._recent.between(each.start_ns, each.end_ns)[0].stamp_ns for each in decided]
+        segments = (
+            SpottedSegment(start_ns, each.end_ns, self._labels[each.action])
+            for start_ns, each in zip(first_ns, decided, strict=True)
+        )
+        return Spotted(tuple(segments), self._ongoing)
 
     def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
         """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""
