@@ -83,9 +83,13 @@ OF_SEGMENTS: Mapping[str, Problem] = {
         "The fusion was started after the segment, and no objects have arrived yet, though there were some.",
         "Check that the tracker runs.",
     ),
-    "… lost: none came for … s of the segment": Problem(
-        "`objects` or `postures` did not arrive for so long that the object is unknown.",
-        "Check whether tracker or preprocessor were restarted, and the network. Mark the action again.",
+    "objects lost: none came for … s of the segment": Problem(
+        "No message of objects arrived for so long that the object is unknown.",
+        "Check whether the marker tracker was restarted, and the network. Mark the action again.",
+    ),
+    "postures lost: none came for … s of the segment": Problem(
+        "No posture arrived for so long that the object is unknown.",
+        "Check whether the pose preprocessor was restarted, and the network. Mark the action again.",
     ),
     "objects lost: the first came … s after the start": Problem(
         "The tracker published no objects before.", "Mark the action again."

@@ -20,7 +20,7 @@ from live import System, free_endpoint, wait_until
 
 ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
 SIX = {"scene_simulator", PAGE, *SERVICES}
-UNCHECKED = {"trainer", "watch"}
+UNCHECKED = {"demo_model", "watch"}
 TRAINER = "model_trainer"
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
@@ -45,7 +45,7 @@ def services() -> dict[str, dict[str, Any]]:
     return services_of(MAIN)
 
 
-def test_router_seven_services_trainer_and_watch_stand_in_one_flat_list(services):
+def test_router_seven_services_demo_model_and_watch_stand_in_one_flat_list(services):
     assert set(services) == {"router", *SIX, TRAINER, *UNCHECKED}
     assert not [name for name, service in services.items() if "depends_on" in service]
 
@@ -83,9 +83,9 @@ def test_nobody_is_root_can_write_or_can_take_all_memory(file):
             assert set(service) >= {"mem_limit", "pids_limit"}
 
 
-def test_all_come_back_but_the_trainer_and_all_pass_signals_on(services):
-    assert {service["restart"] for name, service in services.items() if name != "trainer"} == {"unless-stopped"}
-    assert services["trainer"]["restart"] == "no"
+def test_all_come_back_but_the_copying_of_the_model_and_all_pass_signals_on(services):
+    assert {service["restart"] for name, service in services.items() if name != "demo_model"} == {"unless-stopped"}
+    assert services["demo_model"]["restart"] == "no"
     assert all(service["init"] for service in services.values())
 
 
@@ -115,8 +115,8 @@ def test_the_tracker_knows_the_objects_of_the_simulated_scene(services, monkeypa
 
 def test_the_demo_model_is_written_where_the_one_who_teaches_takes_it_from(services):
     model = services[TRAINER]["environment"]["ACTUM_ORIGINAL_MODEL"]
-    assert services["trainer"]["command"][0].endswith(f"-o {model}")
-    assert services["trainer"]["volumes"] == ["models:/models"]
+    assert services["demo_model"]["command"][0].endswith(f" {model}")
+    assert services["demo_model"]["volumes"] == ["models:/models"]
     assert "models:/models:ro" in services["som_classifier"]["volumes"]
 
 
@@ -127,7 +127,7 @@ def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services)
     assert trainer["environment"]["ACTUM_TRAINER_DATA"].startswith("/models/")
     assert trainer["volumes"] == ["models:/models"]
     assert trainer["entrypoint"] == ["python", "-m", "model_trainer"]
-    assert services["trainer"]["command"][0].startswith("test -e /models/model.npz && exit;")
+    assert services["demo_model"]["command"][0].startswith("test -e /models/model.npz && exit;")
 
 
 def test_who_answers_keeps_the_answers_where_they_stay(services):
@@ -254,7 +254,7 @@ def project(monkeypatch):
 def test_up_recognises_and_down_leaves_nothing(project):
     compose("up", "--detach", "--wait", "--wait-timeout", "120", "router", *SIX)
     print(compose("ps", "--format", "table {{.Service}}\t{{.Status}}"))
-    assert engine("wait", *compose("ps", "--all", "--quiet", "trainer").split()) == "0\n"
+    assert engine("wait", *compose("ps", "--all", "--quiet", "demo_model").split()) == "0\n"
     users = {name: compose("exec", "-T", name, "id", "-u").strip() for name in ("router", *SIX)}
     assert set(users.values()) == {"10001"}
     for image, size_mb in image_sizes_mb().items():
