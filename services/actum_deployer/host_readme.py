@@ -144,5 +144,6 @@ def _link(deployment: Deployment, host: Host) -> str:
     later = [each.name for each in deployment.hosts if each != host and each not in earlier]
     reached = f"TCP port {host.port} has to be reachable from {', '.join(later)}." if later else ""
     dialled = f"The router connects to {', '.join(f'{each.name} at {each.endpoint}' for each in earlier)}."
-    images = "Images go from host to host." if deployment.images_cross else "Images do not leave the camera's host."
+    cross = deployment.images_cross or not deployment.secured  # only access control keeps them
+    images = "Images go from host to host." if cross else "Images do not leave the camera's host."
     return " ".join(filter(None, [reached, dialled if earlier else "", images]))

@@ -175,3 +175,18 @@ def test_but_for_security_a_router_is_the_usual_one(secured: bool, tmp_path: Pat
     made = zenoh.Config.from_file(tmp_path / "camera" / "router.json5")
     for path in ("mode", "scouting", "transport/shared_memory", "transport/link/tx", "adminspace"):
         assert made.get_json(path) == usual.get_json(path), path
+
+
+@pytest.mark.parametrize(
+    ("secured", "images_cross", "said"),
+    [
+        (True, False, "Images do not leave the camera's host."),
+        (True, True, "Images go from host to host."),
+        (False, False, "Images go from host to host."),
+    ],
+)
+def test_a_hosts_readme_says_whether_images_cross_and_without_access_control_they_do(
+    secured: bool, images_cross: bool, said: str, tmp_path: Path
+) -> None:
+    write_deployment(Deployment(HOSTS, secured=secured, images_cross=images_cross), tmp_path, days=30)
+    assert said in (tmp_path / "camera" / "README.md").read_text()
