@@ -94,18 +94,12 @@ class StreamRecorder:
         if mark.kind == "start" and mark.label is None:
             mark = mark.model_copy(update={"label": self._label})
         if mark.stamp_ns is not None:
-            if self._is_outside(mark.stamp_ns):
+            first_ns, last_ns = self._frames_ns or (mark.stamp_ns, mark.stamp_ns)
+            if not first_ns - MAX_SKEW_NS <= mark.stamp_ns <= last_ns + MAX_SKEW_NS:  # of no frame, past or to come
                 self.counters.reject("mark_outside_frames", f"{mark.segment_id} at {mark.stamp_ns} ns, none of theirs")
                 return
             self._store(mark, received_ns)
         self._place(self._marks.take(mark, received_ns, self._newest_ns))
-
-    def _is_outside(self, stamp_ns: int) -> bool:
-        """Tell whether no frame that has come, or is about to come, may have a mark's stamp."""
-        if self._frames_ns is None:
-            return False
-        first_ns, last_ns = self._frames_ns
-        return not first_ns - MAX_SKEW_NS <= stamp_ns <= last_ns + MAX_SKEW_NS
 
     def _place(self, marks: Iterable[Placed]) -> None:
         for mark, since_ns in marks:

@@ -58,7 +58,7 @@ class UnstampedMarks:
     """Keeps marks without a stamp until their segment is answered. Times are of one clock that never goes back.
 
     A segment's name is used again after a sensor has begun anew, or by another sensor. So an answer is that of the
-    newest start and end mark of its name, each answer places each of the two once, and one that is told again none. A
+    newest start and end mark of its name, each answer places each of the two once, and a repeated answer none. A
     mark that comes up to `MAX_SKEW_NS` after an answer that still lacks it is that segment's, unless another answer
     follows within that time and before the next start mark.
     """

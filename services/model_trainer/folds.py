@@ -26,12 +26,12 @@ class Fold:
     spans: Mapping[str, Sequence[Span]]
 
     def holds(self, file: str, start_ns: int, end_ns: int) -> bool:
-        """Tell whether the middle of a span of time is left out."""
+        """Return whether the middle of a span of time is left out."""
         middle_ns = (start_ns + end_ns) // 2
         return any(first <= middle_ns < last for first, last in self.spans.get(file, ()))
 
     def holds_sample(self, sample: SegmentSample) -> bool:
-        """Tell whether an example is left out."""
+        """Return whether an example is left out."""
         return self.holds(sample.file, int(sample.stamps_ns[0]), int(sample.stamps_ns[-1]))
 
     def without(self, stream: LabelledStream) -> LabelledStream:

@@ -90,7 +90,7 @@ def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
 def evaluate(arguments: Arguments, progress: Progress) -> dict[str, Any]:
     """Cross-validate a set, and say what to record next."""
     recordings = select([_snapshot(arguments)])
-    result = evaluate_set(recordings, PRESETS[arguments.preset], arguments.seed, progress)
+    result = evaluate_set(recordings, PRESETS[arguments.preset], progress)
     answers = [(each.label, each.predicted) for each in result.marked.predictions if each.predicted is not None]
     return {**result.as_json(), "advice": advice(_contents(arguments, None), answers, result.found)}
 

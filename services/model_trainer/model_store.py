@@ -98,7 +98,7 @@ class ModelStore:
             Refusal: there is none of that id.
             OSError: the file cannot be written.
         """
-        self._put(self._usable(model_id))
+        self._put(model_id)
 
     def undo(self) -> None:
         """Return to the model that was in use before.
@@ -110,17 +110,8 @@ class ModelStore:
         before = self.before
         if not before:
             raise Refusal("there is no previous model to return to")
-        self._put(self._usable(before[-1]))
+        self._put(before[-1])
         self._remember(before[:-1])
-
-    def _usable(self, model_id: str) -> Path:
-        """Return a model's file, once it could be loaded."""
-        path = self.get(model_id).path
-        try:
-            load_model(path)
-        except ModelError as error:
-            raise Refusal(str(error)) from None
-        return path
 
     def delete(self, model_id: str) -> None:
         """Delete a model.
@@ -178,13 +169,18 @@ class ModelStore:
             except (ModelError, Refusal) as error:  # it was replaced meanwhile, or nothing can be read here
                 raise OSError(str(error)) from None
 
-    def _put(self, path: Path) -> None:
+    def _put(self, model_id: str) -> None:
         """Put a model in the place of the one in use and of the one that was taught last, of which copies stay.
 
         Raises:
-            Refusal: one of them is none that could be returned to.
+            Refusal: the model cannot be loaded, or one of those is none that could be returned to.
             OSError: a file cannot be written, or no copy of it be kept.
         """
+        path = self.get(model_id).path
+        try:
+            load_model(path)
+        except ModelError as error:
+            raise Refusal(str(error)) from None
         self.look()
         places = dict.fromkeys((self._taught, self._watched))
         for place in places:

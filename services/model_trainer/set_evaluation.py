@@ -48,9 +48,7 @@ class SetEvaluation:
         }
 
 
-def evaluate_set(
-    recordings: Sequence[Recording], preset: Preset, seed: int = 0, progress: Progress = silent
-) -> SetEvaluation:
+def evaluate_set(recordings: Sequence[Recording], preset: Preset, progress: Progress = silent) -> SetEvaluation:
     """Leave each person out in turn, or else shares of the examples, and pool the answers.
 
     Raises:
@@ -66,7 +64,7 @@ def evaluate_set(
         within = prefixed(f"{fold.name}: ", progress)
         rest = [sample for sample in samples.usable if not fold.holds_sample(sample)]
         streams = [stream for stream in map(fold.without, samples.streams) if len(stream.stamps_ns)]
-        model = train_to_spot(rest, streams, preset, seed, within)
+        model = train_to_spot(rest, streams, preset, progress=within)
         for sample in filter(fold.holds_sample, samples.usable):
             answered = answer(model, encoded(model, sample))
             predictions.append(prediction(sample.file, sample.segment_id, sample.label, answered.label, answered))

@@ -55,7 +55,7 @@ class TakeCommands:
         )
 
     def recording_to(self, name: str) -> bool:
-        """Tell whether a take of that set is being recorded."""
+        """Return whether a take of that set is being recorded."""
         return self._take is not None and self._take.state.set == name
 
     def take(self, message: Skeleton | Segment, counters: Counters) -> None:

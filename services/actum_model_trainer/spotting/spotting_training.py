@@ -1,7 +1,7 @@
 """Training of the search for actions without marks, on a trained recogniser and whole streams.
 
 The heads are trained twice: the second time also on what the first ones took for actions in the background of people
-left out. Of all background that is the part that tells most.
+left out. Of all background that part teaches most.
 """
 
 from collections.abc import Sequence
