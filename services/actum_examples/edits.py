@@ -10,9 +10,9 @@ from actum.messages import AUTO, CUT, MANUAL, Hand, segment_marks
 from actum.node import SECOND_NS
 from actum.rewriting import rewrite, unchanged
 from actum_examples.cutting.courses import recorded_courses
-from actum_examples.cutting.marks import free_names, marks_of
 from actum_examples.cutting.repetitions import Cuts, cut
 from actum_examples.marked_segment import MarkedSegment
+from actum_examples.marking import cut_marks, free_names
 from actum_examples.stored_changes import deleted, following, in_turn, mirrored_with, remarked, without_messages
 from actum_examples.take import Take, frames_topic
 
@@ -104,7 +104,7 @@ def cut_again(take: Take, times: int, label: str) -> Cuts:
     for each in cuts.repetitions:
         repetition = MarkedSegment("", sensor, each.start_ns, each.end_ns, label, CUT, cuts.course.agent)
         _refuse_overlap(take, repetition, kept)
-    marks = marks_of(cuts, free_names([each.segment_id for each in kept], CUT), label, sensor)
+    marks = cut_marks(cuts, label, sensor, [each.segment_id for each in kept])
     change = in_turn(without_messages(old), following(take.segments, kept))
     rewrite(take.path, change, marks, take.fields_with(kept))
     return cuts

@@ -52,27 +52,27 @@ class MarkedSegment:
         return self.label is not None and self.bounds_ns is not None
 
     def has(self, message: Naming) -> bool:
-        """Tell whether a message with a stamp is a mark of this segment, an answer to it or its ground truth."""
+        """Return whether a message with a stamp is a mark of this segment, an answer to it or its ground truth."""
         if (message.sensor, message.segment_id) != (self.sensor, self.segment_id):
             return False
         at_ns = message.start_ns if isinstance(message, Action | Event) else message.stamp_ns
         return at_ns is not None and self.span_ns[0] <= at_ns < self.span_ns[1]
 
     def holds(self, agent: int | None, stamp_ns: int) -> bool:
-        """Tell whether a person's frame, or anybody's, belongs to it: those at its bounds do."""
+        """Return whether a person's frame, or anybody's, belongs to it: those at its bounds do."""
         if self.start_ns is None or self.end_ns is None:
             return False
         return self.start_ns <= stamp_ns <= self.end_ns and (agent is None or self.agent in (None, agent))
 
     def shares_frames(self, other: "MarkedSegment") -> bool:
-        """Tell whether a frame of one person may belong to two segments."""
+        """Return whether a frame of one person may belong to two segments."""
         if self.bounds_ns is None or other.bounds_ns is None or self.sensor != other.sensor:
             return False
         same_person = self.agent is None or other.agent is None or self.agent == other.agent
         return same_person and self.bounds_ns[0] <= other.bounds_ns[1] and other.bounds_ns[0] <= self.bounds_ns[1]
 
     def overlaps(self, other: "MarkedSegment") -> bool:
-        """Tell whether two segments share more of one person's time than an instant."""
+        """Return whether two segments share more of one person's time than an instant."""
         return self.shares_frames(other) and self.start_ns != other.end_ns and other.start_ns != self.end_ns
 
 

@@ -53,12 +53,7 @@ def deleted(gone: Sequence[MarkedSegment], kept: Sequence[MarkedSegment]) -> Cha
     Frames that a kept example of that person holds stay. One without a label was background, and is so afterwards.
     """
     examples = [each for each in gone if each.label is not None]
-    return in_turn(without_messages(gone), _frames([*gone, *kept], kept, examples))
-
-
-def following(before: Sequence[MarkedSegment], after: Sequence[MarkedSegment]) -> Change:
-    """Return the change by which a recording's frames follow its segments, of which some are moved or mirrored."""
-    return _frames(before, after, ())
+    return in_turn(without_messages(gone), following([*gone, *kept], kept, examples))
 
 
 def remarked(old: MarkedSegment, new: MarkedSegment) -> Change:
@@ -90,8 +85,13 @@ def mirrored_with(one: MarkedSegment, segments: Sequence[MarkedSegment]) -> list
     return together
 
 
-def _frames(before: Sequence[MarkedSegment], after: Sequence[MarkedSegment], gone: Sequence[MarkedSegment]) -> Change:
-    """Return the change that takes people out of the frames of what is gone, and mirrors others anew."""
+def following(
+    before: Sequence[MarkedSegment], after: Sequence[MarkedSegment], gone: Sequence[MarkedSegment] = ()
+) -> Change:
+    """Return the change by which a recording's frames follow its segments, of which some are moved or mirrored.
+
+    People are taken out of the frames of the examples that are gone.
+    """
     needed = [each for each in after if each.label is not None]
     was, will = ([each for each in some if each.mirrored] for some in (before, after))
 

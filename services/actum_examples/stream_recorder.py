@@ -94,37 +94,25 @@ class StreamRecorder:
         if mark.kind == "start" and mark.label is None:
             mark = mark.model_copy(update={"label": self._label})
         if mark.stamp_ns is not None:
-            if self._is_outside(mark.stamp_ns):
+            first_ns, last_ns = self._frames_ns or (mark.stamp_ns, mark.stamp_ns)
+            if not first_ns - MAX_SKEW_NS <= mark.stamp_ns <= last_ns + MAX_SKEW_NS:  # of no frame, past or to come
                 self.counters.reject("mark_outside_frames", f"{mark.segment_id} at {mark.stamp_ns} ns, none of theirs")
                 return
             self._store(mark, received_ns)
         self._place(self._marks.take(mark, received_ns, self._newest_ns))
 
-    def _is_outside(self, stamp_ns: int) -> bool:
-        """Tell whether no frame that has come, or is about to come, may have a mark's stamp."""
-        if self._frames_ns is None:
-            return False
-        first_ns, last_ns = self._frames_ns
-        return not first_ns - MAX_SKEW_NS <= stamp_ns <= last_ns + MAX_SKEW_NS
-
     def _place(self, marks: Iterable[Placed]) -> None:
-        for pending, bounds in marks:
-            stamp_ns = None if bounds is None else bounds.stamp_ns(pending.mark)
-            stamp_ns = pending.newest_ns if stamp_ns is None else stamp_ns
-            if stamp_ns is None:
-                self.counters.reject("mark_without_stamp", f"{pending.mark.segment_id}: it came before any frame")
+        for mark, since_ns in marks:
+            if mark.stamp_ns is None:
+                self.counters.reject("mark_without_stamp", f"{mark.segment_id}: it came before any frame")
             else:
-                self._store(pending.mark.model_copy(update={"stamp_ns": stamp_ns}), pending.since_ns)
+                self._store(mark, since_ns)
 
     def _store(self, message: Message, received_ns: int) -> None:
         self._recorder.write(message, received_ns)
         self.stored += 1
-        if isinstance(message, Segment):
-            self._count(message)
-
-    def _count(self, mark: Segment) -> None:
-        if mark.kind == "start":
-            self.actions[origin_of(mark), mark.label] += 1
-            self.unended.add(mark.segment_id)
-        else:
-            self.unended.discard(mark.segment_id)
+        if isinstance(message, Segment) and message.kind == "start":
+            self.actions[origin_of(message), message.label] += 1
+            self.unended.add(message.segment_id)
+        elif isinstance(message, Segment):
+            self.unended.discard(message.segment_id)

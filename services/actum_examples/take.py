@@ -121,7 +121,9 @@ def read_take(recording: Recording) -> Take:
         replace(each, mirrored=each.segment_id in mirrored, doubts=tuple(doubts.get(each.segment_id, ())))
         for each in marked_segments(marks)
     )
-    of_take = (*doubts.get(OF_THE_TAKE, ()), *_unread(recording))
+    skipped = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
+    unread = [f"{UNREAD}{skipped}"] if skipped else []
+    of_take = (*doubts.get(OF_THE_TAKE, ()), *unread)
     return Take(recording, segments, min(stamps_ns, default=0), max(stamps_ns, default=0), of_take)
 
 
@@ -134,12 +136,6 @@ def doubts_field(doubts: Mapping[str, Sequence[str]]) -> str:
     """Return the metadata field of doubts, from texts by segment id."""
     stored = {name: [text for text in texts if not text.startswith(UNREAD)] for name, texts in doubts.items()}
     return json.dumps({name: texts for name, texts in stored.items() if texts})
-
-
-def _unread(recording: Recording) -> list[str]:
-    """Return what was skipped of a recording, as a doubt."""
-    kinds = ", ".join(f"{kind} {count}" for kind, count in sorted(recording.skipped.items()))
-    return [f"{UNREAD}{kinds}"] if kinds else []
 
 
 def _field(recording: Recording, name: str, form: TypeAdapter[T], default: T) -> T:

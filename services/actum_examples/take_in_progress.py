@@ -1,6 +1,5 @@
 """The take that is being recorded: stores the frames, counts along, and marks the examples in the end."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from actum.commands import Refusal
@@ -10,8 +9,7 @@ from actum.node import SECOND_NS
 from actum.recorder import Recorder
 from actum.stamps import Order, StampGuard
 from actum_examples.cutting.counting import LAST_REST_S, NOBODY, RepetitionCounter
-from actum_examples.finishing import cut_marks, uncut_parts
-from actum_examples.marked_segment import MarkedSegment
+from actum_examples.marking import Marking, marking_of
 from actum_examples.take import OF_THE_TAKE
 
 LONGEST_S = 600.0
@@ -37,23 +35,8 @@ class Marked:
     end_ns: int | None = None
 
 
-@dataclass(frozen=True)
-class Marking:
-    """The marks of a take that has ended.
-
-    Attributes:
-        marks: of its examples; None where nothing is kept.
-        doubts: what may be wrong with them, by segment id.
-        uncut: where somebody may have done the action without an example of it.
-    """
-
-    marks: Sequence[Segment] | None
-    doubts: dict[str, list[str]]
-    uncut: Sequence[MarkedSegment] = ()
-
-
 class TakeInProgress:
-    """Takes skeletons and marks, and tells how far the take is.
+    """Takes skeletons and marks, and shows how far the take is.
 
     Where somebody marks segments meanwhile, these are the examples; else those that are cut out.
     """
@@ -65,8 +48,6 @@ class TakeInProgress:
         self._marked: dict[str, Marked] = {}
         self._refused, self._refusal = 0, ""
         self._order = StampGuard()
-        self._sensor = ""
-        self._first_ns: int | None = None
         self._newest_ns = 0
         self._frames = 0
 
@@ -82,17 +63,18 @@ class TakeInProgress:
             raise Refusal(BEGUN_ANEW)
         if order is Order.STALE:
             return
-        if self._first_ns is None:
-            self._first_ns = self._newest_ns = skeleton.stamp_ns
+        if self._counter.first_ns is None:
+            self._newest_ns = skeleton.stamp_ns
         passed_s = (skeleton.stamp_ns - self._newest_ns) / SECOND_NS
         if passed_s > LONGEST_S:
             raise Refusal(JUMPED.format(passed_s))
-        self._sensor, self._newest_ns = skeleton.sensor, skeleton.stamp_ns
+        self._newest_ns = skeleton.stamp_ns
         self._frames += 1
         self.recorder.write(skeleton)
         self._counter.take(skeleton)
+        assert self._counter.first_ns is not None
         update = {
-            "seconds": (self._newest_ns - self._first_ns) / SECOND_NS,
+            "seconds": (self._newest_ns - self._counter.first_ns) / SECOND_NS,
             "people": len(skeleton.agents),
             "counted": self._counted(),
             "phase": self._counter.phase,
@@ -103,11 +85,11 @@ class TakeInProgress:
         """Take somebody's mark; one without a stamp is put at the newest frame. Return why it is refused, if it is."""
         if mark.origin not in (None, MANUAL) or self.state.kind == "background":
             return None
-        refusal = self._refusal_of(mark)
+        stamp_ns = self._newest_ns if mark.stamp_ns is None else mark.stamp_ns
+        refusal = self._refusal_of(mark, stamp_ns)
         if refusal is not None:
             self._refused, self._refusal = self._refused + 1, refusal
             return refusal
-        stamp_ns = self._newest_ns if mark.stamp_ns is None else mark.stamp_ns
         begun = self._marked.get(mark.segment_id)
         if begun is None:
             self._marked[mark.segment_id] = Marked(mark.segment_id, mark.agent, stamp_ns)
@@ -116,14 +98,14 @@ class TakeInProgress:
             self.state = self.state.model_copy(update={"counted": self._counted()})
         return None
 
-    def _refusal_of(self, mark: Segment) -> str | None:
+    def _refusal_of(self, mark: Segment, stamp_ns: int) -> str | None:
         """Return why a mark is refused: none of its frames can be in the take, or it bounds no example."""
         name = f"the {mark.kind} mark of {mark.segment_id[:LONGEST_NAME]!r}"
-        if self._first_ns is None:
+        first_ns = self._counter.first_ns
+        if first_ns is None:
             return f"{name} came before the first frame: wait until a person is in view"
-        stamp_ns = self._newest_ns if mark.stamp_ns is None else mark.stamp_ns
-        if not self._first_ns <= stamp_ns <= self._newest_ns + MAX_SKEW_NS:
-            there = f"whose frames last from {self._first_ns} to {self._newest_ns} ns"
+        if not first_ns <= stamp_ns <= self._newest_ns + MAX_SKEW_NS:
+            there = f"whose frames last from {first_ns} to {self._newest_ns} ns"
             return f"{name} at {stamp_ns} ns lies outside the take, {there}: use the stamps of its frames"
         begun = self._marked.get(mark.segment_id)
         if mark.kind == "start" or (begun is not None and begun.end_ns is not None):
@@ -149,19 +131,24 @@ class TakeInProgress:
 
     def marking(self) -> Marking:
         """Mark the examples."""
-        if self._first_ns is None:
+        if self._counter.first_ns is None:
             return Marking(None, {OF_THE_TAKE: [NOT_KEPT.format(NOBODY)]})
         if self.state.kind == "background":
-            return Marking((), {})
-        ended, doubts = self._ended(), self._doubts()
-        if ended:
-            return Marking([mark for each in ended for mark in self._marks_of(each)], {OF_THE_TAKE: doubts})
+            return Marking(())
+        label, sensor, doubts = self.state.label, self._counter.sensor, self._doubts()
+        marks = [
+            mark
+            for each, end_ns in self._ended()
+            for mark in segment_marks(each.start_ns, end_ns, sensor, each.segment_id, label, each.agent, origin=MANUAL)
+        ]
+        if marks:
+            return Marking(marks, {OF_THE_TAKE: doubts})
         cuts = self._counter.cuts()
         if cuts is None:
             return Marking(None, {OF_THE_TAKE: [NOT_KEPT.format(self._counter.why_none), *doubts]})
-        marks, of_cuts = cut_marks(cuts, self.state.label, self._sensor)
-        uncut = uncut_parts(cuts, self.state.asked, self._sensor)
-        return Marking(marks, {**of_cuts, OF_THE_TAKE: [*of_cuts.get(OF_THE_TAKE, []), *doubts]}, uncut)
+        marking = marking_of(cuts, self.state.asked, label, sensor)
+        marking.doubts.setdefault(OF_THE_TAKE, []).extend(doubts)
+        return marking
 
     def _doubts(self) -> list[str]:
         """Return what became of the marks that make no example, in sentences."""
@@ -174,24 +161,14 @@ class TakeInProgress:
         return doubts
 
     def _counted(self) -> int:
-        return len(self._ended()) if self._marked else min(self._counter.count, self.state.asked)
+        if self._marked:
+            return len(self._ended())
+        return 0 if self.state.kind == "background" else self._counter.count
 
-    def _ended(self) -> list[Marked]:
-        """Return the marked segments that have an end and frames; none lasts longer than the take."""
+    def _ended(self) -> list[tuple[Marked, int]]:
+        """List the marked segments that have an end and frames, with their end (ns), at the latest the take's."""
         return [
-            replace(each, end_ns=min(each.end_ns, self._newest_ns))
+            (each, min(each.end_ns, self._newest_ns))
             for each in self._marked.values()
             if each.end_ns is not None and each.start_ns < self._newest_ns
         ]
-
-    def _marks_of(self, marked: Marked) -> list[Segment]:
-        assert marked.end_ns is not None
-        return segment_marks(
-            marked.start_ns,
-            marked.end_ns,
-            self._sensor,
-            marked.segment_id,
-            self.state.label,
-            marked.agent,
-            origin=MANUAL,
-        )

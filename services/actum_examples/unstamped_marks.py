@@ -24,7 +24,7 @@ class Bounds:
     lacks: set[str]
 
     def stamp_ns(self, mark: Segment) -> int | None:
-        """Return the stamp of a mark of the segment, None where the answer does not know its end."""
+        """Return the stamp of a mark of the segment, None where the answer has no end."""
         return self.start_ns if mark.kind == "start" else self.end_ns
 
 
@@ -42,16 +42,23 @@ class Pending:
         """Until when an answer of its own may come."""
         return self.since_ns + (SETTLE_NS if self.late_for is None else MAX_SKEW_NS)
 
+    def placed(self, bounds: Bounds | None) -> "Placed":
+        """Give the mark the stamp of its segment's answer; else that of the newest frame; else the answer's start."""
+        answered_ns = None if bounds is None else bounds.stamp_ns(self.mark)
+        known_ns = [answered_ns, self.newest_ns, None if bounds is None else bounds.start_ns]
+        stamp_ns = next((each for each in known_ns if each is not None), None)
+        return self.mark.model_copy(update={"stamp_ns": stamp_ns}), self.since_ns
 
-Placed = tuple[Pending, Bounds | None]
-"""A mark that waits no longer, and its segment's bounds; None where nothing has answered it."""
+
+Placed = tuple[Segment, int]
+"""A mark that waits no longer, and since when it has waited (ns); without a stamp where nothing gives it one."""
 
 
 class UnstampedMarks:
     """Keeps marks without a stamp until their segment is answered. Times are of one clock that never goes back.
 
     A segment's name is used again after a sensor has begun anew, or by another sensor. So an answer is that of the
-    newest start and end mark of its name, each answer places each of the two once, and one that is told again none. A
+    newest start and end mark of its name, each answer places each of the two once, and a repeated answer none. A
     mark that comes up to `MAX_SKEW_NS` after an answer that still lacks it is that segment's, unless another answer
     follows within that time and before the next start mark.
     """
@@ -89,7 +96,7 @@ class UnstampedMarks:
             if pending is not None:
                 bounds.lacks.discard(kind)
                 if pending.mark.stamp_ns is None:
-                    yield pending, bounds
+                    yield pending.placed(bounds)
 
     def tick(self, now_ns: int) -> Iterator[Placed]:
         """Yield the marks that have waited for long enough."""
@@ -119,4 +126,4 @@ class UnstampedMarks:
             return
         if pending.late_for is not None:
             pending.late_for.lacks.discard(pending.mark.kind)
-        yield pending, pending.late_for
+        yield pending.placed(pending.late_for)

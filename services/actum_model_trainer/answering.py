@@ -12,10 +12,14 @@ from som_classifier.model import Model, Recognition
 
 def encoded(model: Model, sample: SegmentSample) -> list[Frame]:
     """Return a sample's frames, each with the activity that the model's encoder gives it."""
-    encoder = model.encoder()
-    frames = [_frame(sample, index) for index in range(len(sample.stamps_ns))]
-    for frame in frames:
+    encoder, frames = model.encoder(), []
+    for index, stamp_ns in enumerate(sample.stamps_ns):
+        kinematics = Kinematics(sample.postures[index], sample.velocities[index])
+        missing = tuple(np.flatnonzero(np.isnan(kinematics.posture[:, 0])).tolist())
+        joints, motion = sample.joints[index], sample.motion[index]
+        frame = Frame(int(stamp_ns), None, (), 0, 0.0, joints, motion, kinematics, missing)
         frame.activity = encoder.encode(frame)
+        frames.append(frame)
     return frames
 
 
@@ -23,12 +27,3 @@ def answer(model: Model, frames: Sequence[Frame], fraction: float = 1.0) -> Reco
     """Return the model's answer to the first share (0 to 1) of a sample's encoded frames; 1 is the complete action."""
     count = min(len(frames), max(model.min_frames, round(fraction * len(frames))))
     return model.recognise(frames[:count], complete=fraction >= 1.0)
-
-
-def _frame(sample: SegmentSample, index: int) -> Frame:
-    kinematics = Kinematics(sample.postures[index], sample.velocities[index])
-    missing_joints = np.flatnonzero(np.isnan(kinematics.posture[:, 0])).tolist()
-    return Frame(
-        int(sample.stamps_ns[index]), None, (), 0, 0.0, sample.joints[index], sample.motion[index], kinematics,
-        tuple(missing_joints),
-    )  # fmt: skip

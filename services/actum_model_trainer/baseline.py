@@ -53,12 +53,12 @@ def nearest_neighbour(training: Sequence[Recording], test: Sequence[Recording]) 
         )
     labels = [label for label, _ in labelled_paths]
     points_m = np.stack([points for _, points in labelled_paths])
-    return Evaluation(
-        tuple(
-            Prediction(path.file, path.segment_id, path.label, _nearest(labels, points_m, path.points_m))
-            for path in hand_paths(test)
-        )
-    )
+    predictions = []
+    for path in hand_paths(test):
+        distances2 = None if path.points_m is None else np.square(points_m - path.points_m).sum(axis=(1, 2))
+        nearest = None if distances2 is None else labels[int(np.argmin(distances2))]
+        predictions.append(Prediction(path.file, path.segment_id, path.label, nearest))
+    return Evaluation(tuple(predictions))
 
 
 def hand_paths(recordings: Sequence[Recording]) -> Iterator[HandPath]:
@@ -106,9 +106,3 @@ def _hands_and_torso(agent: Agent) -> Array | None:
     if None in points or not np.isfinite(array := np.array(points, dtype=np.float64)).all():
         return None
     return array
-
-
-def _nearest(labels: list[str], points_m: Array, path_m: Array | None) -> str | None:
-    if path_m is None:
-        return None
-    return labels[int(np.argmin(np.square(points_m - path_m).sum(axis=(1, 2))))]

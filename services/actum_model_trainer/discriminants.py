@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Indices
+from actum.arrays import Array, Floats, Indices
 from actum_model_trainer.samples import SegmentSample
 
 FOLDS_WITHIN_AN_ACTION = 5  # of an action that one person alone did
@@ -71,8 +71,8 @@ def fit_discriminants(
 ) -> Discriminants:
     """Fit scores = vectors · axes + offsets to indicators, minimising squared error + penalty × ‖axes‖².
 
-    The penalty is `shrinkage` times the mean squared length of the centred vectors. The axes are sought in the span of
-    the vectors (dual form), so that one inverse of their n × n inner products serves all folds.
+    The axes are sought in the span of the vectors (`dual_form`), so that one inverse of their n × n inner products
+    serves all folds.
 
     Args:
         vectors: (n, inputs).
@@ -80,10 +80,7 @@ def fit_discriminants(
         folds: (n,), from `folds_of`.
         shrinkage: relative penalty.
     """
-    mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
-    centred = vectors - mean
-    products = (centred @ centred.T).astype(np.float64)
-    penalty = shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
+    mean, centred, products, penalty = dual_form(vectors, shrinkage)
     inverse = np.linalg.inv(products + penalty * np.eye(len(products)))
     intercept: Array = indicators.mean(axis=0)
     dual = inverse @ (indicators - intercept)
@@ -93,7 +90,20 @@ def fit_discriminants(
     return Discriminants(axes, (intercept - mean @ axes).astype(np.float32), training_scores, cross_validated)
 
 
-def _cross_validated(training_scores: Array, inverse: Array, indicators: Array, folds: Indices) -> Array:
+def dual_form(
+    vectors: NDArray[np.float32], shrinkage: float
+) -> tuple[NDArray[np.float32], NDArray[np.float32], Array, float]:
+    """Return the mean (inputs,) of vectors (n, inputs), the centred vectors, their inner products (n, n), the penalty.
+
+    The penalty is `shrinkage` times the mean squared length of the centred vectors.
+    """
+    mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
+    centred = vectors - mean
+    products = (centred @ centred.T).astype(np.float64)
+    return mean, centred, products, shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
+
+
+def _cross_validated(training_scores: Array, inverse: Floats, indicators: Array, folds: Indices) -> Array:
     """Return the scores (n, actions), cross-validated for all vectors whose action occurs in another fold, too."""
     scores = training_scores.copy()
     for fold in np.unique(folds):
@@ -105,7 +115,7 @@ def _cross_validated(training_scores: Array, inverse: Array, indicators: Array, 
     return scores
 
 
-def _held_out_scores(inverse: Array, indicators: Array, fitted: Indices, held_out: Indices) -> Array:
+def _held_out_scores(inverse: Floats, indicators: Array, fitted: Indices, held_out: Indices) -> Array:
     """Return the scores (held out, actions) of discriminants fitted to the other rows, from the inverse B for all rows.
 
     By the inverse of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: no discriminants need be fitted.

@@ -10,10 +10,10 @@ MAX_OTHER_HAND_SHARE = 0.1  # of all one-armed samples: now and then even a righ
 
 
 def people_prefer_one_hand(samples: Sequence[SegmentSample]) -> bool:
-    """Tell whether hardly any one-armed sample is done with the hand that its person uses less often.
+    """Return whether hardly any one-armed sample is done with the hand that its person uses less often.
 
     Where people change hands from action to action (reading the watch on the left arm, waving with the right), the
-    hand itself tells actions apart.
+    hand itself distinguishes actions.
     """
     by_person: dict[str, Counter[Hand]] = {}
     for sample in samples:

@@ -23,14 +23,10 @@ def median_neighbour_distance2(vectors: Array) -> float:
 
     Where that is 0, it is one grid step.
     """
-    nearest = [_nearest_distance2(vectors, start) for start in range(0, len(vectors), CHUNK_ROWS)]
+    nearest = []
+    for start in range(0, len(vectors), CHUNK_ROWS):
+        chunk = vectors[start : start + CHUNK_ROWS]
+        distances2 = np.square(chunk[:, None] - vectors).sum(axis=2)
+        distances2[np.arange(len(chunk)), np.arange(start, start + len(chunk))] = np.inf
+        nearest.append(distances2.min(axis=1))
     return float(np.median(np.concatenate(nearest))) or GRID_STEP2
-
-
-def _nearest_distance2(vectors: Array, start: int) -> Array:
-    """Return the squared distance of each row of the chunk that begins at `start` to its nearest other row."""
-    chunk = vectors[start : start + CHUNK_ROWS]
-    distances2 = np.square(chunk[:, None] - vectors).sum(axis=2)
-    distances2[np.arange(len(chunk)), np.arange(start, start + len(chunk))] = np.inf
-    nearest: Array = distances2.min(axis=1)
-    return nearest

@@ -75,11 +75,16 @@ class _VariantSums:
         same_arm = self._left_handed[frames - 1] == self._left_handed[-1]
         if (variant, same_arm) not in self._prefixes:
             as_read = self._variants[variant]
-            self._prefixes[variant, same_arm] = self._summed(as_read if same_arm else as_read.mirrored)
+            sums = summed_activities(self._first, as_read if same_arm else as_read.mirrored)
+            self._prefixes[variant, same_arm] = [
+                Prefix([row], um) for row, um in zip(sums, self._travelled_um, strict=True)
+            ]
         return PrefixSums(self._prefixes[variant, same_arm][: frames + 1])
 
-    def _summed(self, variant: Variant) -> list[Prefix]:
-        activities = self._first.activities(variant.postures, variant.velocities)
-        sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
-        np.cumsum(quantised(activities), axis=0, out=sums[1:])
-        return [Prefix([row], travelled_um) for row, travelled_um in zip(sums, self._travelled_um, strict=True)]
+
+def summed_activities(first: FirstMaps, variant: Variant) -> NDArray[np.uint32]:
+    """Return the sums of the activity before each of a variant's n frames, and after the last, (n + 1, channels)."""
+    activities = quantised(first.activities(variant.postures, variant.velocities))
+    sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
+    np.cumsum(activities, axis=0, out=sums[1:])
+    return sums

@@ -9,7 +9,7 @@ from actum.arrays import Floats
 
 SMALLEST_INVERSE_TEMPERATURE = 0.5  # per unit of cosine: even the largest lead, 2, makes odds of no more than e to 1
 LARGEST_INVERSE_TEMPERATURE = 200.0  # per unit of cosine: a lead of 0.02 already makes a confidence of 0.98
-_BISECTIONS = 40  # leave 6 / 2⁴⁰ of the range of the logarithm, less than single precision tells apart
+_BISECTIONS = 40  # leave 6 / 2⁴⁰ of the range of the logarithm, less than single precision distinguishes
 
 
 def matched_inverse_temperature(cosines: Floats, accuracy: float) -> float:

@@ -1,13 +1,16 @@
 """What the trainer's commands share: the number of changes, and how a full disk or a damaged file is refused."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import wraps
-from typing import Any
+from typing import Any, ParamSpec
 
 from actum.commands import Command, Refusal
 from actum.recording import RecordingError
+from model_trainer.replies import Done
+
+P = ParamSpec("P")
 
 
 class Changes:
@@ -16,16 +19,16 @@ class Changes:
     def __init__(self) -> None:
         self.revision = 0
 
-    @contextmanager
-    def change(self) -> Iterator[None]:
-        """Count a change once the block has made it.
+    def made(self, change: Callable[P, object], *args: P.args, **kwargs: P.kwargs) -> Done:
+        """Make a change by a function and its arguments, count the change, and return the reply.
 
         Raises:
             Refusal: a file could not be read or written; all are as they were.
         """
         with on_disk():
-            yield
+            change(*args, **kwargs)
         self.revision += 1
+        return Done(revision=self.revision)
 
 
 @contextmanager

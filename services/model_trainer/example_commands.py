@@ -74,45 +74,37 @@ class ExampleCommands:
     def _relabel(self, request: Relabel) -> Done:
         """Give an example another label."""
         take, example = self._found(request)
-        with self._changes.change():
-            edits.relabel(take, example, request.label)
-        return Done(revision=self._changes.revision)
+        return self._changes.made(edits.relabel, take, example, request.label)
 
     def _trim(self, request: Trim) -> Done:
         """Give an example another start and end."""
         take, example = self._found(request)
         try:
-            with self._changes.change():
-                edits.move(take, example, request.start_ns, request.end_ns)
+            return self._changes.made(edits.move, take, example, request.start_ns, request.end_ns)
         except edits.EditError as error:
             raise Refusal(str(error)) from None
-        return Done(revision=self._changes.revision)
 
     def _mirror(self, request: OfExample) -> Done:
         """Exchange left and right in an example and those that share frames with it; twice is as before."""
         take, example = self._found(request)
-        with self._changes.change():
-            edits.mirror(take, example)
-        return Done(revision=self._changes.revision)
+        return self._changes.made(edits.mirror, take, example)
 
     def _delete(self, request: OfExample) -> Done:
         """Delete an example with the frames of whoever acts in it, unless another example needs them."""
         take, example = self._found(request)
-        with self._changes.change():
-            self.remove(take, [example])
-        return Done(revision=self._changes.revision)
+        return self._changes.made(self.remove, take, [example])
 
     def _delete_action(self, request: DeleteAction) -> Done:
         """Delete all examples of an action."""
-        stored = self._sets.get(request.set)
-        chosen = {take.id: [each for each in take.examples if each.label == request.label] for take in stored.takes}
-        if not any(chosen.values()):
+        takes = [take for take in self._sets.get(request.set).takes if request.label in take.labels]
+        if not takes:
             raise Refusal(f"the set {request.set} has no example of {request.label!r}: choose another action")
-        with self._changes.change():
-            for take in stored.takes:
-                if chosen[take.id]:
-                    self.remove(take, chosen[take.id])
-        return Done(revision=self._changes.revision)
+
+        def remove_all() -> None:
+            for take in takes:
+                self.remove(take, [each for each in take.examples if each.label == request.label])
+
+        return self._changes.made(remove_all)
 
     def _found(self, request: OfExample) -> tuple[Take, MarkedSegment]:
         for take in self._sets.get(request.set).takes:

@@ -54,13 +54,10 @@ def _film(frames: list[Frame], model: Model | None) -> Film:
         if not pictures or frame.stamp_ns - pictures[-1].stamp_ns >= SECOND_NS / MOST_HZ - EARLY_NS:
             pictures.append(frame)
     joints = np.array([frame.kinematics.posture for frame in pictures if frame.kinematics is not None])
-    return Film(tuple(frame.stamp_ns for frame in pictures), joints, _trace(frames, model))
-
-
-def _trace(frames: list[Frame], model: Model | None) -> Array | None:
-    if model is None or len(frames) < model.min_frames:
-        return None
-    encoder = model.encoder()
-    for frame in frames:
-        frame.activity = encoder.encode(frame)
-    return model.trace(frames)
+    trace = None
+    if model is not None and len(frames) >= model.min_frames:
+        encoder = model.encoder()
+        for frame in frames:
+            frame.activity = encoder.encode(frame)
+        trace = model.trace(frames)
+    return Film(tuple(frame.stamp_ns for frame in pictures), joints, trace)

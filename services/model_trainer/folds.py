@@ -1,13 +1,13 @@
 """Which parts of a set are left out in turn to test on: one person after another, or else a share of the examples."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.detections import Detection, Found, Truth
 from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample
 
 FOLDS = 3
@@ -26,12 +26,12 @@ class Fold:
     spans: Mapping[str, Sequence[Span]]
 
     def holds(self, file: str, start_ns: int, end_ns: int) -> bool:
-        """Tell whether the middle of a span of time is left out."""
+        """Return whether the middle of a span of time is left out."""
         middle_ns = (start_ns + end_ns) // 2
         return any(first <= middle_ns < last for first, last in self.spans.get(file, ()))
 
     def holds_sample(self, sample: SegmentSample) -> bool:
-        """Tell whether an example is left out."""
+        """Return whether an example is left out."""
         return self.holds(sample.file, int(sample.stamps_ns[0]), int(sample.stamps_ns[-1]))
 
     def without(self, stream: LabelledStream) -> LabelledStream:
@@ -51,17 +51,16 @@ class Fold:
 
     def within(self, found: Found) -> Found:
         """Return of what was found, done and seen what lies in the part that is left out."""
-        return Found(self._of(found.detections), self._of(found.truths), tuple(self._seen(found.seen)))
+        seen = [
+            replace(each, start_ns=max(each.start_ns, first), end_ns=min(each.end_ns, last - 1))
+            for each in found.seen
+            for first, last in self.spans.get(each.file, ())
+        ]
+        inside = tuple(each for each in seen if each.start_ns < each.end_ns)
+        return Found(self._of(found.detections), self._of(found.truths), inside)
 
     def _of(self, intervals: Sequence[Detection] | Sequence[Truth]) -> tuple:  # type: ignore[type-arg]
         return tuple(each for each in intervals if self.holds(each.file, each.start_ns, each.end_ns))
-
-    def _seen(self, seen: Iterable[Stretch]) -> Iterable[Stretch]:
-        for each in seen:
-            for first, last in self.spans.get(each.file, ()):
-                start_ns, end_ns = max(each.start_ns, first), min(each.end_ns, last - 1)
-                if start_ns < end_ns:
-                    yield replace(each, start_ns=start_ns, end_ns=end_ns)
 
 
 def folds_of(samples: Samples) -> tuple[str, list[Fold]]:

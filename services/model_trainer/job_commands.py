@@ -26,7 +26,7 @@ KINDS = {"train": "a training", "evaluate": "a test", "import": "a video import"
 UPLOAD = "upload"
 """The folder, within a job's, of the video that it imports."""
 LONGEST_TEXT = 1000
-"""Characters of a stage or message that are told."""
+"""Characters of a stage or message that are published."""
 
 
 class JobCommands:
@@ -80,7 +80,7 @@ class JobCommands:
         )
 
     def importing_to(self, name: str) -> bool:
-        """Tell whether a running job is to add a take to that set."""
+        """Return whether a running job is to add a take to that set."""
         job = self._job
         return job is not None and job.state == "running" and job.kind == "import" and job.set == name
 

@@ -13,7 +13,7 @@ from actum.atomic_file import claim
 from actum.runtime.stopping import PARENT
 
 END_S = 2.0
-"""How long (s) a job may take to end when it is told to, before it is killed."""
+"""How long (s) a job may take to end after SIGTERM, before it is killed."""
 FORMS = ({"stage", "done"}, {"result"}, {"error"})
 """The fields of a job's lines."""
 CLAIM = ".running"
@@ -24,12 +24,12 @@ LAST_WORDS = 400
 
 @dataclass(frozen=True)
 class JobRequest:
-    """What a job's process is told.
+    """The arguments of a job's process.
 
     Attributes:
         kind: train, evaluate or import.
         folder: where it writes what it makes.
-        fields: what it is to do, plain values.
+        fields: the other arguments, plain values; see `model_trainer.job.Arguments`.
     """
 
     kind: str
@@ -70,12 +70,12 @@ class JobProcess:
 
     def __init__(self, request: JobRequest) -> None:
         self._errors = request.folder / "errors.txt"
-        told = json.dumps({"kind": request.kind, "folder": str(request.folder), **request.fields})
+        arguments = json.dumps({"kind": request.kind, "folder": str(request.folder), **request.fields})
         self._claimed = (request.folder / CLAIM).open("wb")
         claim(self._claimed)
         with self._errors.open("wb") as errors:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "model_trainer.job", told],
+                [sys.executable, "-m", "model_trainer.job", arguments],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=errors,
@@ -92,7 +92,9 @@ class JobProcess:
         if "result" in newest or "error" in newest:
             return Ended(newest.get("result"), newest.get("error", "")) if ended else None
         if ended:
-            return Ended(None, f"its process ended unexpectedly ({self._how()}): {self._last_words()}")
+            code = self._process.returncode
+            how = f"signal {-code}" if code < 0 else f"exit code {code}"
+            return Ended(None, f"its process ended unexpectedly ({how}): {self._last_words()}")
         return Progressing(newest["stage"], newest["done"]) if newest else None
 
     def end(self) -> None:
@@ -109,15 +111,11 @@ class JobProcess:
         with self._claimed, self._process.stdout as lines:
             for line in lines:
                 try:
-                    told = json.loads(line, parse_constant=lambda _: None)  # no number: no reply can hold it
+                    printed = json.loads(line, parse_constant=lambda _: None)  # no number: no reply can hold it
                 except (ValueError, RecursionError):
                     continue  # what a library prints
-                if isinstance(told, dict) and told.keys() in FORMS:
-                    self._newest = told
-
-    def _how(self) -> str:
-        code = self._process.returncode
-        return f"signal {-code}" if code < 0 else f"exit code {code}"
+                if isinstance(printed, dict) and printed.keys() in FORMS:
+                    self._newest = printed
 
     def _last_words(self) -> str:
         try:

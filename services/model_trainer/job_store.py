@@ -118,7 +118,7 @@ class JobStore:
         shutil.rmtree(self._folder / f"{job_id}{WORK}", ignore_errors=True)
 
     def _runs_elsewhere(self, job_id: str) -> bool:
-        """Tell whether another trainer runs a job: one of another sensor, in the same folder."""
+        """Return whether another trainer runs a job: one of another sensor, in the same folder."""
         return is_being_written(self._folder / f"{job_id}{WORK}" / CLAIM)
 
 

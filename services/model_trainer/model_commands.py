@@ -28,21 +28,15 @@ class ModelCommands:
 
     def _activate(self, request: OfModel) -> Done:
         """Put a model into use, without a gap: the classifier takes it within a second."""
-        with self._changes.change():
-            self._models.activate(request.model)
-        return Done(revision=self._changes.revision)
+        return self._changes.made(self._models.activate, request.model)
 
     def _undo(self, _: NoFields) -> Done:
         """Return to the model that was in use before."""
-        with self._changes.change():
-            self._models.undo()
-        return Done(revision=self._changes.revision)
+        return self._changes.made(self._models.undo)
 
     def _delete(self, request: OfModel) -> Done:
         """Delete a model that is not in use."""
-        with self._changes.change():
-            self._models.delete(request.model)
-        return Done(revision=self._changes.revision)
+        return self._changes.made(self._models.delete, request.model)
 
     def _compare(self, request: Compare) -> Comparison:
         """Set a model beside another, or beside the one in use."""

@@ -29,6 +29,11 @@ class ModelStore:
 
     A model that somebody else has put there is kept as one more, so that it can be returned to. What is put into use
     here is also stored as `taught`, where the next run finds it.
+
+    Attributes:
+        active: the id of the model that the classifier is to use; None where there is none.
+        loaded: that model itself.
+        set: the set that it was trained on; None where that is not known.
     """
 
     def __init__(self, folder: Path, watched: Path, taught: Path, now_ns: Callable[[], int]) -> None:
@@ -36,40 +41,21 @@ class ModelStore:
         self._watched, self._taught = watched, taught
         self._now_ns = now_ns
         self._version: tuple[int, int] | None = None
-        self._active: str | None = None
-        self._loaded: Model | None = None
-        self._set: str | None = None
+        self.active: str | None = None
+        self.loaded: Model | None = None
+        self.set: str | None = None
         self._history = _read_history(folder / HISTORY)
         folder.mkdir(parents=True, exist_ok=True)
         clear_unfinished(folder)
         self.look()
 
     @property
-    def active(self) -> str | None:
-        """The id of the model that the classifier is to use; None where there is none."""
-        return self._active
-
-    @property
-    def loaded(self) -> Model | None:
-        """That model itself."""
-        return self._loaded
-
-    @property
-    def set(self) -> str | None:
-        """The set that it was trained on; None where that is not known."""
-        return self._set
-
-    @property
     def before(self) -> list[str]:
         """The models that were in use before and are still there, in order."""
         there = [each for each in self._history if os.path.exists(self._path(each))]  # noqa: PTH110 - without access it is not there, which is no error
-        while there and there[-1] == self._active:
+        while there and there[-1] == self.active:
             there.pop()
         return there
-
-    def all(self) -> list[StoredModel]:
-        """List the models, the oldest first."""
-        return self.listed()[0]
 
     def listed(self) -> tuple[list[StoredModel], list[str]]:
         """List the models, the oldest first, and of each file that cannot be read why."""
@@ -88,7 +74,7 @@ class ModelStore:
         Raises:
             Refusal: there is none of that id.
         """
-        for each in self.all():
+        for each in self.listed()[0]:
             if each.id == model_id:
                 return each
         raise Refusal(f"there is no model {model_id!r}: the command 'list' lists the models")
@@ -112,10 +98,10 @@ class ModelStore:
             Refusal: there is none of that id.
             OSError: the file cannot be written.
         """
-        self._put(self._usable(model_id))
+        self._put(model_id)
 
-    def undo(self) -> str:
-        """Return to the model that was in use before, and return its id.
+    def undo(self) -> None:
+        """Return to the model that was in use before.
 
         Raises:
             Refusal: there was none.
@@ -124,18 +110,8 @@ class ModelStore:
         before = self.before
         if not before:
             raise Refusal("there is no previous model to return to")
-        self._put(self._usable(before[-1]))
+        self._put(before[-1])
         self._remember(before[:-1])
-        return before[-1]
-
-    def _usable(self, model_id: str) -> Path:
-        """Return a model's file, once it could be loaded."""
-        path = self.get(model_id).path
-        try:
-            load_model(path)
-        except ModelError as error:
-            raise Refusal(str(error)) from None
-        return path
 
     def delete(self, model_id: str) -> None:
         """Delete a model.
@@ -144,13 +120,13 @@ class ModelStore:
             Refusal: there is none of that id, or it is in use.
         """
         path = self.get(model_id).path
-        if model_id == self._active:
+        if model_id == self.active:
             raise Refusal(f"model {model_id} is in use: use another model first, then delete this one")
         path.unlink()
         path.with_suffix(".json").unlink(missing_ok=True)
 
     def look(self) -> bool:
-        """Look whether the watched file has changed; tell so.
+        """Look whether the watched file has changed, and return that.
 
         Raises:
             OSError: it is none of ours, and no copy of it can be kept.
@@ -163,23 +139,23 @@ class ModelStore:
         if version == self._version:
             return False
         self._version = version
-        before = self._active
+        before = self.active
         self._take_in()
-        if before is not None and before != self._active:
+        if before is not None and before != self.active:
             self._remember([*self.before, before])
         return True
 
     def _take_in(self) -> None:
         """Read the watched file, and keep a copy of it where it is none of ours."""
         try:
-            self._loaded = load_model(self._watched)
+            self.loaded = load_model(self._watched)
         except ModelError:
-            self._loaded = self._active = self._set = None
+            self.loaded = self.active = self.set = None
             return
-        self._active = self._loaded.id
-        self._keep_copy(self._watched, self._active)
-        about = described(self._path(self._active))
-        self._set = (about and about.set) or None
+        self.active = self.loaded.id
+        self._keep_copy(self._watched, self.active)
+        about = described(self._path(self.active))
+        self.set = (about and about.set) or None
 
     def _keep_copy(self, file: Path, model_id: str) -> None:
         """Keep a copy of a file, which is a model of that id, where there is none.
@@ -193,13 +169,18 @@ class ModelStore:
             except (ModelError, Refusal) as error:  # it was replaced meanwhile, or nothing can be read here
                 raise OSError(str(error)) from None
 
-    def _put(self, path: Path) -> None:
+    def _put(self, model_id: str) -> None:
         """Put a model in the place of the one in use and of the one that was taught last, of which copies stay.
 
         Raises:
-            Refusal: one of them is none that could be returned to.
+            Refusal: the model cannot be loaded, or one of those is none that could be returned to.
             OSError: a file cannot be written, or no copy of it be kept.
         """
+        path = self.get(model_id).path
+        try:
+            load_model(path)
+        except ModelError as error:
+            raise Refusal(str(error)) from None
         self.look()
         places = dict.fromkeys((self._taught, self._watched))
         for place in places:

@@ -70,7 +70,10 @@ class OriginalModel:
         self._problem, self._refused = "", None
         try:
             if not self._holds(state):
-                self._copy(load_model(self._file).id, state)
+                model = load_model(self._file)
+                copy(self._file, self._in_use)
+                self._copied = Copied(file=self._name, modified_ns=state[0], size=state[1], model=model.id)
+                write_whole(self._record, self._copied.model_dump_json().encode())
         except ModelError as error:
             self._problem, self._refused = encodable(str(error)), state
             return self._problem
@@ -82,11 +85,6 @@ class OriginalModel:
         if copied is None or not self._in_use.exists():
             return False
         return (copied.file, copied.modified_ns, copied.size) == (self._name, *state)
-
-    def _copy(self, model_id: str, state: tuple[int, int]) -> None:
-        copy(self._file, self._in_use)
-        self._copied = Copied(file=self._name, modified_ns=state[0], size=state[1], model=model_id)
-        write_whole(self._record, self._copied.model_dump_json().encode())
 
 
 def _read(record: Path) -> Copied | None:

@@ -55,7 +55,11 @@ class SetCommands:
                 sets.append(_listed(self._sets.get(name)))
             except (OSError, Refusal) as error:  # its folder has vanished meanwhile, or cannot be read
                 unreadable.append(encodable(str(error)))
-        self._count([*unreadable, *(problem for each in sets for problem in each.unreadable)])
+        problems = [*unreadable, *(problem for each in sets for problem in each.unreadable)]
+        for problem in problems:
+            if problem not in self._counted:  # each once for as long as the file cannot be read
+                self._counters.reject("unreadable_file", problem)
+        self._counted = frozenset(problems)
         return Everything(
             sets=sets,
             models=[ModelListed.of(each, active) for each in models],
@@ -65,32 +69,19 @@ class SetCommands:
             unreadable=unreadable,
         )
 
-    def _count(self, problems: list[str]) -> None:
-        """Count the files that cannot be read, each once for as long as it cannot."""
-        for problem in problems:
-            if problem not in self._counted:
-                self._counters.reject("unreadable_file", problem)
-        self._counted = frozenset(problems)
-
     def _create(self, request: OfSet) -> Done:
         """Make an empty set of examples."""
-        with self._changes.change():
-            self._sets.create(request.set)
-        return Done(revision=self._changes.revision)
+        return self._changes.made(self._sets.create, request.set)
 
     def _rename(self, request: RenameSet) -> Done:
         """Give a set another name."""
         self._refuse_busy(request.set)
-        with self._changes.change():
-            self._sets.rename(request.set, request.name)
-        return Done(revision=self._changes.revision)
+        return self._changes.made(self._sets.rename, request.set, request.name)
 
     def _delete(self, request: OfSet) -> Done:
         """Delete a set with all its examples; models that were trained on it stay."""
         self._refuse_busy(request.set)
-        with self._changes.change():
-            self._sets.delete(request.set)
-        return Done(revision=self._changes.revision)
+        return self._changes.made(self._sets.delete, request.set)
 
     def _refuse_busy(self, name: str) -> None:
         """Refuse what would take a set away from what writes to it."""

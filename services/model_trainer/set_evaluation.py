@@ -14,8 +14,7 @@ from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.provenance import actions_of
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train_to_spot
-from model_trainer.folds import Fold, folds_of
-from som_classifier.model import Model
+from model_trainer.folds import folds_of
 from som_classifier.presets import Preset
 from som_classifier.spotting.spotted import SpottingOptions
 
@@ -49,9 +48,7 @@ class SetEvaluation:
         }
 
 
-def evaluate_set(
-    recordings: Sequence[Recording], preset: Preset, seed: int = 0, progress: Progress = silent
-) -> SetEvaluation:
+def evaluate_set(recordings: Sequence[Recording], preset: Preset, progress: Progress = silent) -> SetEvaluation:
     """Leave each person out in turn, or else shares of the examples, and pool the answers.
 
     Raises:
@@ -67,17 +64,12 @@ def evaluate_set(
         within = prefixed(f"{fold.name}: ", progress)
         rest = [sample for sample in samples.usable if not fold.holds_sample(sample)]
         streams = [stream for stream in map(fold.without, samples.streams) if len(stream.stamps_ns)]
-        model = train_to_spot(rest, streams, preset, seed, within)
+        model = train_to_spot(rest, streams, preset, progress=within)
         for sample in filter(fold.holds_sample, samples.usable):
             answered = answer(model, encoded(model, sample))
             predictions.append(prediction(sample.file, sample.segment_id, sample.label, answered.label, answered))
         finds = finds and model.spotter(SpottingOptions()) is not None
         if finds:
-            found += _found(model, recordings, fold, within)
+            held = [recording for recording in recordings if str(recording.path) in fold.spans]
+            found += fold.within(found_by(model, held, within))
     return SetEvaluation(by, Evaluation(tuple(predictions)), scores_of(found) if finds else None)
-
-
-def _found(model: Model, recordings: Sequence[Recording], fold: Fold, progress: Progress) -> Found:
-    """Return what a model finds in the part that its training left out."""
-    held = [recording for recording in recordings if str(recording.path) in fold.spans]
-    return fold.within(found_by(model, held, progress))

@@ -30,14 +30,14 @@ MAKING = ".making"
 """The folder of takes that are being recorded."""
 LEAVING = ".leaving-"
 """Beginning of the name of a folder that is being deleted."""
+LEFT = re.compile(rf"{re.escape(LEAVING)}[0-9]+")
+"""The names of such folders."""
 SUFFIX = ".mcap"
 """Ending of takes."""
 TAKE = re.compile(r"take-([0-9]{4,9})")
 """The names of takes that are made here."""
 DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{kind}{n}" for kind in ("com", "lpt") for n in range(1, 10))})
 """Names that Windows keeps for devices, with any ending: a set of that name could not be copied there."""
-LEFT = re.compile(rf"{re.escape(LEAVING)}[0-9]+")
-"""The names of such folders."""
 
 
 class Description(BaseModel):
@@ -202,20 +202,17 @@ class SetStore:
         stat = path.stat()
         version = stat.st_mtime_ns, stat.st_size
         known = self._read.get(path)
-        if known is None or known[0] != version:
-            known = self._read[path] = version, _read(path)
-        return known[1]
-
-
-def _read(path: Path) -> Take:
-    take = read_take(Recording(path))
-    if (count := len(take.segments)) > MOST_SEGMENTS:
-        raise RecordingError(
-            path,
-            f"the recording has {count} actions with a start and an end; at most {MOST_SEGMENTS} are allowed",
-            "split the recording",
-        )
-    return take
+        if known is not None and known[0] == version:
+            return known[1]
+        take = read_take(Recording(path))
+        if (count := len(take.segments)) > MOST_SEGMENTS:
+            raise RecordingError(
+                path,
+                f"the recording has {count} actions with a start and an end; at most {MOST_SEGMENTS} are allowed",
+                "split the recording",
+            )
+        self._read[path] = version, take
+        return take
 
 
 def take_number(stem: str) -> int:

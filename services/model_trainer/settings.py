@@ -11,7 +11,7 @@ MODEL = "model.npz"
 
 
 class Settings(ServiceSettings):
-    """What the trainer can be told beside what every service can."""
+    """The settings of the trainer, and those of every service."""
 
     trainer_data: Path = Field(
         default_factory=lambda: data_folder() / "teaching",

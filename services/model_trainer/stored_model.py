@@ -27,11 +27,15 @@ class About(BaseModel):
 
 @dataclass(frozen=True)
 class StoredModel:
-    """A model: when it came (ISO 8601), of which set ("" where not known), what it tells apart, of whom it learnt.
+    """What is listed of a model.
 
     Attributes:
+        created: when it came (ISO 8601).
+        set: the set that it was trained on; empty where that is not known.
+        labels: its actions.
+        people: whose examples it was trained on.
         samples: the number of examples.
-        scores: what is known of how well it does, by name, numbers.
+        scores: its known scores, by name.
     """
 
     id: str

@@ -12,8 +12,8 @@ from actum.messages import Segment, Skeleton, TakeState
 from actum.node import Counters
 from actum.recording import RecordingError
 from actum_examples.cutting.choice import MOST_REPETITIONS
-from actum_examples.finishing import finish_take
 from actum_examples.marked_segment import MarkedSegment
+from actum_examples.marking import finish_take
 from actum_examples.take import OF_THE_TAKE, Take
 from actum_examples.take_in_progress import TakeInProgress
 from model_trainer.changes import Changes
@@ -55,7 +55,7 @@ class TakeCommands:
         )
 
     def recording_to(self, name: str) -> bool:
-        """Tell whether a take of that set is being recorded."""
+        """Return whether a take of that set is being recorded."""
         return self._take is not None and self._take.state.set == name
 
     def take(self, message: Skeleton | Segment, counters: Counters) -> None:
@@ -153,9 +153,7 @@ class TakeCommands:
             self._give_up()
             name, examples = None, 0
         else:
-            added = self._sets.add(
-                take.state.set, finish_take(take.recorder, marking.marks, marking.doubts, marking.uncut)
-            )
+            added = self._sets.add(take.state.set, finish_take(take.recorder, marking))
             self._take = None
             self._changes.revision += 1
             name, examples = added.id, len(added.examples)

@@ -25,7 +25,7 @@ from model_trainer.settings import MODEL, Settings
 from model_trainer.take_commands import TakeCommands
 from model_trainer.upload_store import UploadStore
 
-TELL_NS = SECOND_NS // 5
+PUBLISH_NS = SECOND_NS // 5
 """Shortest time between two messages (ns): a page that counts along needs no more."""
 REPEAT_NS = SECOND_NS
 """Longest time between two messages (ns): who comes late waits no longer."""
@@ -69,8 +69,8 @@ class ModelTrainer:
         self._set_commands = SetCommands(sets, self._models, self._changes, self._takes, self._jobs, self.counters)
         self._model_commands = ModelCommands(self._models, self._changes)
         self._newest_ns = 0
-        self._told: Training | None = None
-        self._told_ns = self._looked_ns = 0
+        self._published: Training | None = None
+        self._published_ns = self._looked_ns = 0
 
     @classmethod
     def configured(cls, settings: Settings) -> "ModelTrainer":
@@ -95,7 +95,7 @@ class ModelTrainer:
     def commands(self) -> tuple[Command[Any, Any], ...]:
         """What can be asked."""
         groups = (self._set_commands, self._takes, self._examples, self._jobs, self._model_commands)
-        own = Command("state", NoFields, State, self._tell)
+        own = Command("state", NoFields, State, self._reply)
         return (own, *(refusing(command) for group in groups for command in group.commands))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
@@ -117,11 +117,11 @@ class ModelTrainer:
             self._looked_ns = now_ns
             self._look_at_model()
         state = self._state()
-        if self._told is not None:
-            changed = state != self._told.model_copy(update={"stamp_ns": state.stamp_ns})
-            if abs(now_ns - self._told_ns) < (TELL_NS if changed else REPEAT_NS):
+        if self._published is not None:
+            changed = state != self._published.model_copy(update={"stamp_ns": state.stamp_ns})
+            if abs(now_ns - self._published_ns) < (PUBLISH_NS if changed else REPEAT_NS):
                 return []
-        self._told, self._told_ns = state, now_ns
+        self._published, self._published_ns = state, now_ns
         return [state]
 
     def _look_at_model(self) -> None:
@@ -138,7 +138,7 @@ class ModelTrainer:
         if self._original is not None and (problem := self._original.copy_changed()) is not None:
             self.counters.reject("bad_model", problem)
 
-    def _tell(self, _: NoFields) -> State:
+    def _reply(self, _: NoFields) -> State:
         """Tell what is recorded, which job runs, and which model is in use."""
         return State.model_validate(self._state().model_dump(include=set(State.model_fields)))
 

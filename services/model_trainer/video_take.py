@@ -4,13 +4,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from actum.commands import Refusal
-from actum.messages import CUT, Segment, Skeleton, segment_marks
+from actum.messages import CUT, Skeleton, segment_marks
 from actum.node import Counters
 from actum.recorder import Recorder
 from actum_examples.cutting.courses import PersonTracks
 from actum_examples.cutting.repetitions import cut
-from actum_examples.finishing import cut_marks, finish_take, uncut_parts
-from actum_examples.marked_segment import MarkedSegment
+from actum_examples.marking import Marking, finish_take, marking_of
 from actum_examples.take import CREATED, OF_THE_TAKE
 from actum_model_trainer.progress import Progress
 from sensor_gateway.cameras import estimator_of, optics_of
@@ -34,18 +33,16 @@ def take_of_video(
     """
     recorder = Recorder(output, person=person, source=f"video {video.name}", **{CREATED: created})
     try:
-        marks, doubts, uncut = _recorded(video, recorder, label, count, progress)
+        marking = _recorded(video, recorder, label, count, progress)
     except ValueError as error:
         recorder.discard()
         raise Refusal(str(error)) from None
-    finish_take(recorder, marks, doubts, uncut)
-    return len(marks) // 2, doubts.get(OF_THE_TAKE, [])
+    finish_take(recorder, marking)
+    return len(marking.marks or ()) // 2, marking.doubts.get(OF_THE_TAKE, [])
 
 
-def _recorded(
-    video: Path, recorder: Recorder, label: str, count: int | None, progress: Progress
-) -> tuple[list[Segment], dict[str, list[str]], list[MarkedSegment]]:
-    """Store the skeletons of a video; return the marks of what is cut out, doubts by segment id, and uncut parts."""
+def _recorded(video: Path, recorder: Recorder, label: str, count: int | None, progress: Progress) -> Marking:
+    """Store the skeletons of a video, and mark the examples in it."""
     tracks, seen = PersonTracks(), list[Skeleton]()
     for skeleton in _skeletons(video, progress):
         recorder.write(skeleton)
@@ -53,11 +50,11 @@ def _recorded(
         seen += [skeleton] if skeleton.agents else []
     cuts = cut(tracks.courses(), count, 0)
     if cuts is not None:
-        return *cut_marks(cuts, label, seen[0].sensor), uncut_parts(cuts, count, seen[0].sensor)
+        return marking_of(cuts, count, label, seen[0].sensor)
     if len(seen) < FEWEST_FRAMES or count not in (None, 1):
         raise Refusal("the video shows no person who moves: film the whole person, from the front, in good light")
     whole = seen[0].stamp_ns, seen[-1].stamp_ns, seen[0].sensor
-    return segment_marks(*whole, f"{CUT}-1", label, origin=CUT), {f"{CUT}-1": [WHOLE]}, []
+    return Marking(segment_marks(*whole, f"{CUT}-1", label, origin=CUT), {f"{CUT}-1": [WHOLE]})
 
 
 def _skeletons(video: Path, progress: Progress) -> Iterator[Skeleton]:

@@ -65,39 +65,32 @@ def test_five_with_pauses_are_five(asked: int | None) -> None:
     assert cuts.doubts == ()
 
 
-def test_walking_up_and_back_belongs_to_none() -> None:
-    stream = Stream().then(walk(3)).repeat([moved(eased(42), WAVE)] * 5).then(walk(3)[::-1])
-    assert_at(cuts_of(stream), stream.truths)
+ONE_WAVE = moved(eased(42), WAVE)
+TWO_STROKES = np.concatenate([moved(eased(30), WAVE), rest(0.3), moved(eased(30), WAVE)])
+STREAMS = {
+    "walking up and back belongs to none": Stream().then(walk(3)).repeat([ONE_WAVE] * 5).then(walk(3)[::-1]),
+    "a scratch between belongs to none": (
+        Stream().repeat([ONE_WAVE] * 2).then(moved(eased(30), SCRATCH)).repeat([ONE_WAVE] * 3)
+    ),
+    **{
+        f"a hold of the {name}, longer than the pauses, cuts nothing": (
+            Stream().then(rest(2)).repeat([moved(held(90), joints)] * 5, pause_s=1.0).then(rest(2))
+        )
+        for name, joints in (("wave", WAVE), ("goggles", GOGGLES))
+    },
+    "two strokes with a short stop are one": Stream().repeat([TWO_STROKES] * 5, pause_s=1.5),
+    "durations may differ": Stream().repeat([moved(eased(frames), WAVE) for frames in (36, 45, 54, 40, 60)]),
+}
 
 
-def test_a_scratch_between_belongs_to_none() -> None:
-    waves = [moved(eased(42), WAVE)]
-    stream = Stream().repeat(waves * 2).then(moved(eased(30), SCRATCH)).repeat(waves * 3)
-    assert_at(cuts_of(stream), stream.truths)
-
-
-@pytest.mark.parametrize("joints", [WAVE, GOGGLES])
-def test_a_hold_in_the_middle_cuts_nothing_though_it_is_longer_than_the_pauses(
-    joints: dict[int, tuple[float, float, float]],
-) -> None:
-    stream = Stream().then(rest(2)).repeat([moved(held(90), joints)] * 5, pause_s=1.0).then(rest(2))
-    assert_at(cuts_of(stream), stream.truths)
-
-
-def test_two_strokes_with_a_short_stop_are_one_repetition() -> None:
-    twice = np.concatenate([moved(eased(30), WAVE), rest(0.3), moved(eased(30), WAVE)])
-    stream = Stream().repeat([twice] * 5, pause_s=1.5)
-    assert_at(cuts_of(stream), stream.truths)
+@pytest.mark.parametrize("name", STREAMS)
+def test_five_are_cut_where_they_are(name: str) -> None:
+    assert_at(cuts_of(STREAMS[name]), STREAMS[name].truths)
 
 
 def test_slow_ones_are_found_as_quick_ones_are() -> None:
     stream = Stream().repeat([moved(eased(5 * RATE_HZ), WAVE)] * 4)
     assert_at(cuts_of(stream, 4), stream.truths, near_s=1.0)
-
-
-def test_repetitions_of_different_durations_are_found() -> None:
-    stream = Stream().repeat([moved(eased(frames), WAVE) for frames in (36, 45, 54, 40, 60)])
-    assert_at(cuts_of(stream), stream.truths)
 
 
 def test_a_webcam_at_half_the_rate_with_jitter_and_lost_joints_is_enough() -> None:
@@ -134,34 +127,22 @@ def test_of_two_who_repeat_the_nearer_one_is_cut() -> None:
 
 
 def test_two_that_follow_each_other_almost_at_once_are_two() -> None:
-    wave = moved(eased(42), WAVE)
-    stream = Stream().repeat([wave, np.concatenate([wave, rest(0.1), wave]), wave, wave])
+    stream = Stream().repeat([ONE_WAVE, np.concatenate([ONE_WAVE, rest(0.1), ONE_WAVE]), ONE_WAVE, ONE_WAVE])
     assert len(cuts_of(stream, asked=None).repetitions) == 5
+
+
+ONE_LACKS = "5 of 6 repetitions found: record 1 more"
+SECOND_JOINED = "the second and third repetition may be joined at 3.3 s"
 
 
 @pytest.mark.parametrize(
     ("dips", "asked", "doubts"),
     [
-        (
-            [50],
-            6,
-            ["5 of 6 repetitions found: record 1 more; the second and third repetition may be joined at 3.3 s"],
-        ),
-        ([50], None, ["the second and third repetition may be joined at 3.3 s"]),
-        ([], 6, ["5 of 6 repetitions found: record 1 more"]),
-        (
-            [50, 100],
-            6,
-            ["5 of 6 repetitions found: record 1 more; the second and third repetition may be joined at 3.3 s"],
-        ),
-        (
-            [50, 100],
-            None,
-            [
-                "the second and third repetition may be joined at 3.3 s",
-                "the fourth and fifth repetition may be joined at 6.7 s",
-            ],
-        ),
+        ([50], 6, [f"{ONE_LACKS}; {SECOND_JOINED}"]),
+        ([50], None, [SECOND_JOINED]),
+        ([], 6, [ONE_LACKS]),
+        ([50, 100], 6, [f"{ONE_LACKS}; {SECOND_JOINED}"]),
+        ([50, 100], None, [SECOND_JOINED, "the fourth and fifth repetition may be joined at 6.7 s"]),
         ([10], 5, []),
     ],
 )

@@ -46,8 +46,47 @@ def take(tmp_path: Path) -> Take:
     return Take(tmp_path / "live.mcap")
 
 
-def test_a_mark_with_a_stamp_is_stored_as_it_is(take: Take) -> None:
-    assert take.marks(skeleton(10), mark("start", 7), action(8, 9)) == [("start", 7)]
+PLACED = {
+    "a mark with a stamp is stored as it is": ([skeleton(10), mark("start", 7), action(8, 9)], [("start", 7)]),
+    "one without gets the stamp that the classifier gave it": (
+        [skeleton(10), mark("start"), skeleton(20), skeleton(30), mark("end"), skeleton(40), action(11, 31)],
+        [("start", 11), ("end", 31)],
+    ),
+    "a partial action resolves nothing": (
+        [skeleton(10), mark("start"), action(11, None, final=False), skeleton(20), action(12, 20)],
+        [("start", 12)],
+    ),
+    "one that is overtaken by its final action is resolved too": (
+        [skeleton(10), mark("start"), action(11, 31), mark("end")],
+        [("start", 11), ("end", 31)],
+    ),
+    "those that nothing resolves get the stamp of the frame that was newest when they came": (
+        [skeleton(10), mark("start"), skeleton(20), mark("end"), skeleton(30)],
+        [("start", 10), ("end", 20)],
+    ),
+    "so does an end that the answer does not know": (
+        [skeleton(10), mark("start"), skeleton(20), mark("end"), action(11, None)],
+        [("start", 11), ("end", 20)],
+    ),
+    "a name that is used again after a restart gets the stamps of its own answer": (
+        [
+            skeleton(40),
+            *(mark("start"), mark("end"), action(11, 31, session_id="a")),
+            *(mark("start"), mark("end"), action(5, 25, session_id="b")),
+        ],
+        [("start", 5), ("start", 11), ("end", 25), ("end", 31)],
+    ),
+    "of a restart before the answer the marks of before keep the frame's stamp": (
+        [skeleton(10), mark("start"), skeleton(90), mark("start"), mark("end"), action(95, 99, session_id="b")],
+        [("start", 10), ("start", 95), ("end", 99)],
+    ),
+}
+
+
+@pytest.mark.parametrize("case", PLACED)
+def test_each_mark_is_stored_with_the_stamp_it_is_resolved_to(take: Take, case: str) -> None:
+    stream, marks = PLACED[case]
+    assert take.marks(*stream) == marks
 
 
 @pytest.mark.parametrize("stamp_ns", [0, 1_790_000_000, 2**62 - 1])
@@ -59,43 +98,15 @@ def test_a_mark_outside_of_the_frames_is_counted_and_left_out(take: Take, stamp_
     assert take.counters.rejects == {"mark_outside_frames": 1}
 
 
-def test_a_mark_without_a_stamp_gets_the_one_the_classifier_gave_it(take: Take) -> None:
-    stream = [skeleton(10), mark("start"), skeleton(20), skeleton(30), mark("end"), skeleton(40), action(11, 31)]
-    assert take.marks(*stream) == [("start", 11), ("end", 31)]
-
-
-def test_a_partial_action_resolves_nothing(take: Take) -> None:
-    stream = [skeleton(10), mark("start"), action(11, None, final=False), skeleton(20), action(12, 20)]
-    assert take.marks(*stream) == [("start", 12)]
-
-
 def test_only_the_segments_own_action_resolves_its_marks(take: Take) -> None:
     stream = [skeleton(10), mark("start"), mark("start", segment_id="two"), action(3, 4, "two"), action(5, 6)]
     recorded = [m for m in take.record(*stream) if isinstance(m, Segment)]
     assert [(m.segment_id, m.stamp_ns) for m in recorded] == [("two", 3), ("one", 5)]
 
 
-def test_a_mark_that_is_overtaken_by_its_final_action_is_resolved_too(take: Take) -> None:
-    assert take.marks(skeleton(10), mark("start"), action(11, 31), mark("end")) == [("start", 11), ("end", 31)]
-
-
 def test_a_mark_long_after_an_action_of_its_id_is_another_segments(take: Take) -> None:
     stream = [skeleton(10), mark("start"), action(11, 31), skeleton(99), mark("start")]
     assert take.marks(*stream, apart_ns=3 * SECOND_NS) == [("start", 11), ("start", 99)]
-
-
-def test_marks_nobody_resolved_get_the_newest_frames_stamp_at_their_arrival(take: Take) -> None:
-    assert take.marks(skeleton(10), mark("start"), skeleton(20), mark("end"), skeleton(30)) == [
-        ("start", 10),
-        ("end", 20),
-    ]
-
-
-def test_an_end_that_the_answer_does_not_know_gets_the_newest_frames_stamp(take: Take) -> None:
-    assert take.marks(skeleton(10), mark("start"), skeleton(20), mark("end"), action(11, None)) == [
-        ("start", 11),
-        ("end", 20),
-    ]
 
 
 def test_a_mark_before_any_frame_cannot_be_placed_and_is_counted(take: Take) -> None:
@@ -128,17 +139,6 @@ def test_marks_are_resolved_by_streams_that_are_not_stored(take: Take) -> None:
 
 def test_what_services_say_about_themselves_is_not_stored(take: Take) -> None:
     assert take.record(status()) == []
-
-
-def test_a_name_that_is_used_again_after_a_restart_gets_the_stamps_of_its_own_answer(take: Take) -> None:
-    before = [mark("start"), mark("end"), action(11, 31, session_id="a")]
-    after = [mark("start"), mark("end"), action(5, 25, session_id="b")]
-    assert take.marks(skeleton(40), *before, *after) == [("start", 5), ("start", 11), ("end", 25), ("end", 31)]
-
-
-def test_of_a_restart_before_the_answer_the_marks_of_before_keep_the_frames_stamp(take: Take) -> None:
-    stream = [skeleton(10), mark("start"), skeleton(90), mark("start"), mark("end"), action(95, 99, session_id="b")]
-    assert take.marks(*stream) == [("start", 10), ("start", 95), ("end", 99)]
 
 
 def test_a_mark_that_nothing_answers_is_stored_before_the_end_so_that_a_crash_does_not_cost_it(tmp_path: Path) -> None:

@@ -32,5 +32,5 @@ def test_each_mark_gets_the_stamp_of_its_own_segment(
             expected += [] if stamped[what] else [(str(number), what, bounds[what])]
             placed += marks.take(comes, number)
     placed += marks.close()
-    found = [(each.mark.label, each.mark.kind, own and own.stamp_ns(each.mark)) for each, own in placed]
+    found = [(each.label, each.kind, each.stamp_ns) for each, _ in placed]
     assert sorted(found) == sorted(expected)

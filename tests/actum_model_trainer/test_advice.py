@@ -25,47 +25,50 @@ def advised(samples: Sequence[SegmentSample], answers: Sequence[tuple[str, str]]
     return advice(Contents.of(samples, 0.0), answers)
 
 
-def test_enough_examples_by_two_people_with_background_need_no_warning() -> None:
-    assert advised(examples(ENOUGH), [("push", "push"), ("pull", "pull")] * 6) == []
+@pytest.mark.parametrize(
+    "counts",
+    [ENOUGH, {"push": 18, "pull": 6, "idle": 6}, {"push": 6, "pull": 6, "idle": 100, "background": 2}],
+    ids=["enough of each", "three times as many of one", "any amount of background"],
+)
+def test_enough_examples_by_two_people_with_background_need_no_warning(counts: Mapping[str, int]) -> None:
+    assert advised(examples(counts), [("push", "push"), ("pull", "pull")] * 6) == []
 
 
-def test_two_actions_are_the_fewest() -> None:
-    assert advised([]) == ["There are no examples yet: record at least two actions."]
-    first, *_ = advised(examples({"push": 6, "idle": 6}))
-    assert first == "There are examples of only one action, push: record at least one more action."
-
-
-def test_one_person_says_nothing_of_others() -> None:
-    assert advised(examples(ENOUGH, people=("anna",))) == [
-        "All examples are of anna: record 5 examples of each action by a second person."
-    ]
-
-
-def test_people_that_are_not_named_may_be_one() -> None:
-    (said,) = advised(examples(ENOUGH, people=("",)))
-    assert said.startswith("No example names the person who performs it")
-
-
-def test_few_examples_are_named_with_how_many_more() -> None:
-    assert advised(examples({"push": 2, "lift": 4, "pull": 5, "idle": 5})) == [
-        "Few examples: lift has 4 (1 more needed) and push has 2 (3 more needed). Record at least 5 examples of each "
-        "action."
-    ]
-
-
-def test_actions_may_have_three_times_as_many_examples_as_others() -> None:
-    assert advised(examples({"push": 18, "pull": 6, "idle": 6})) == []
-
-
-def test_more_than_three_times_as_many_are_unbalanced() -> None:
-    assert advised(examples({"push": 20, "pull": 6, "lift": 5, "turn": 7, "idle": 5})) == [
-        "Unbalanced examples: push has 20 examples, more than 3 times as many as lift (5) and pull (6). Record 2 more "
-        "of lift and 1 more of pull."
-    ]
-
-
-def test_background_may_be_as_much_as_there_is() -> None:
-    assert advised(examples({"push": 6, "pull": 6, "idle": 100, "background": 2})) == []
+@pytest.mark.parametrize(
+    ("counts", "people", "said"),
+    [
+        ({}, ("anna", "ben"), "There are no examples yet: record at least two actions."),
+        (
+            {"push": 6, "idle": 6},
+            ("anna", "ben"),
+            "There are examples of only one action, push: record at least one more action.",
+        ),
+        (ENOUGH, ("anna",), "All examples are of anna: record 5 examples of each action by a second person."),
+        (
+            ENOUGH,
+            ("",),
+            "No example names the person who performs it, so the model cannot learn how people differ: record at least "
+            "two people, each under a name.",
+        ),
+        (
+            {"push": 2, "lift": 4, "pull": 5, "idle": 5},
+            ("anna", "ben"),
+            "Few examples: lift has 4 (1 more needed) and push has 2 (3 more needed). Record at least 5 examples of "
+            "each action.",
+        ),
+        (
+            {"push": 20, "pull": 6, "lift": 5, "turn": 7, "idle": 5},
+            ("anna", "ben"),
+            "Unbalanced examples: push has 20 examples, more than 3 times as many as lift (5) and pull (6). Record 2 "
+            "more of lift and 1 more of pull.",
+        ),
+    ],
+    ids=["no example", "one action", "one person", "nobody named", "few", "unbalanced"],
+)
+def test_what_is_lacking_is_said_with_what_to_record(
+    counts: Mapping[str, int], people: tuple[str, ...], said: str
+) -> None:
+    assert advised(examples(counts, people)) == [said]
 
 
 def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:

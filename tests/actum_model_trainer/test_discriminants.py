@@ -1,5 +1,6 @@
 """Discriminants are ridge regression as in the textbook; cross-validated scores know nothing of the person scored."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -103,25 +104,28 @@ def test_cross_validated_scores_are_worse_than_training_scores() -> None:
     assert training_error < cross_validated_error
 
 
-def test_people_are_folds() -> None:
-    samples = [replace(tiny_samples()[0], person=person) for person in "bacabc"]
-    assert folds_of(samples).tolist() == [1, 0, 2, 0, 1, 2]
+MANY = [f"{number:02}" for number in range(MAX_PERSON_FOLDS + 3)]
 
 
-def test_many_people_share_folds() -> None:
-    samples = [replace(tiny_samples()[0], person=f"{number:02}") for number in range(MAX_PERSON_FOLDS + 3)]
-    assert folds_of(samples).tolist() == [*range(MAX_PERSON_FOLDS), 0, 1, 2]
-
-
-def test_samples_of_one_person_are_divided_within_each_action() -> None:
-    samples = [replace(tiny_samples()[0], label=label) for label in "aabaabaab"]
-    assert folds_of(samples).tolist() == [0, 1, 0, 2, 3, 1, 4, 0, 2]
-    assert FOLDS_WITHIN_AN_ACTION == 5
-
-
-def test_an_action_that_only_one_person_did_is_divided_within() -> None:
-    """Without its only person nothing would be known of it."""
+@pytest.mark.parametrize(
+    ("people", "labels", "folds"),
+    [
+        ("bacabc", "aaaaaa", [1, 0, 2, 0, 1, 2]),
+        (MANY, "a" * len(MANY), [*range(MAX_PERSON_FOLDS), 0, 1, 2]),
+        ("a" * 9, "aabaabaab", [0, 1, 0, 2, 3, 1, 4, 0, 2]),
+        ("mmmfm", "xyxxy", [1, 0, 1, 0, 1]),
+    ],
+    ids=[
+        "people are folds",
+        "many people share folds",
+        "one person's examples are divided",
+        "so is one person's action",
+    ],
+)
+def test_folds_are_of_people_or_within_an_action(people: Sequence[str], labels: str, folds: list[int]) -> None:
+    """An action that only one person did is divided: without that person nothing would be known of it."""
     samples = [
-        replace(tiny_samples()[0], person=person, label=label) for person, label in ("mx", "my", "mx", "fx", "my")
+        replace(tiny_samples()[0], person=person, label=label) for person, label in zip(people, labels, strict=True)
     ]
-    assert folds_of(samples).tolist() == [1, 0, 1, 0, 1]
+    assert folds_of(samples).tolist() == folds
+    assert FOLDS_WITHIN_AN_ACTION == 5

@@ -15,7 +15,7 @@ from actum.recording import Recording
 from actum_model_trainer.evaluation import Evaluation, Prediction, evaluate, wilson_interval
 from actum_model_trainer.recorded_segments import classifier_input
 from actum_model_trainer.report import confusion, report, summary
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
 from people import FRAME_NS, skeleton
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
@@ -92,18 +92,17 @@ def test_wilson_bounds_are_where_the_share_is_1_96_deviations_off(n: int, data: 
         assert abs(correct / n - bound) == pytest.approx(1.959964 * sqrt(bound * (1 - bound) / n), rel=1e-4)
 
 
-def test_wilson_at_the_edges() -> None:
+def test_wilson_at_the_edges_and_of_nothing() -> None:
     assert wilson_interval(0, 10) == pytest.approx((0.0, 1 - wilson_interval(10, 10)[0]))
     assert wilson_interval(10, 10)[1] == pytest.approx(1.0)
-
-
-def test_wilson_of_nothing_is_everything() -> None:
     assert wilson_interval(0, 0) == (0.0, 1.0)
 
 
 @each_preset
-def test_final_answers_are_compared_with_labels(three_people: list[Recording], preset: Preset) -> None:
-    model = train(samples_from(three_people).usable, preset)
+def test_final_answers_are_compared_with_labels(
+    three_people: list[Recording], samples: list[SegmentSample], preset: Preset
+) -> None:
+    model = train(samples, preset)
     evaluation = evaluate(model, three_people[:1])
     assert [p.label for p in evaluation.predictions] == [*HAND_PATHS] * 2
     assert [p.segment_id for p in evaluation.predictions] == ["0", "1", "2", "3", "4", "5"]
@@ -112,9 +111,9 @@ def test_final_answers_are_compared_with_labels(three_people: list[Recording], p
 
 @pytest.mark.parametrize(("preset", "told"), [(TINY, True), (TINY_PAPER, False)])
 def test_confidence_is_the_answers_own_and_unknown_is_told_where_the_model_can_tell(
-    three_people: list[Recording], preset: Preset, told: bool
+    three_people: list[Recording], samples: list[SegmentSample], preset: Preset, told: bool
 ) -> None:
-    model = train(samples_from(three_people).usable, preset)
+    model = train(samples, preset)
     final = [
         message
         for message in replay(SomClassifier(model), classifier_input(three_people[0], "kinect0"))
@@ -125,16 +124,16 @@ def test_confidence_is_the_answers_own_and_unknown_is_told_where_the_model_can_t
     assert [p.unknown for p in predictions] == [action.unknown if told else None for action in final]
 
 
-def test_a_label_the_model_does_not_know_is_wrong(three_people: list[Recording], record: Record) -> None:
-    model = train(samples_from(three_people).usable, TINY)
+def test_a_label_the_model_does_not_know_is_wrong(samples: list[SegmentSample], record: Record) -> None:
+    model = train(samples, TINY)
     skeletons, marks = performance(["lift"])
     renamed = [m.model_copy(update={"label": m.label and "juggle"}) for m in marks]
     (prediction,) = evaluate(model, [record("new", *skeletons, *renamed)]).predictions
     assert (prediction.label, prediction.predicted, prediction.correct) == ("juggle", "lift", False)
 
 
-def test_segments_that_cannot_be_answered_are_predicted_as_none(three_people: list[Recording], record: Record) -> None:
-    model = train(samples_from(three_people).usable, TINY)
+def test_segments_that_cannot_be_answered_are_predicted_as_none(samples: list[SegmentSample], record: Record) -> None:
+    model = train(samples, TINY)
     marks = [mark("start", 0, "x", "lift"), mark("end", 9 * FRAME_NS, "x"), mark("start", FRAME_NS, "y", "push")]
     nobody = [skeleton(i * FRAME_NS) for i in range(12)]
     evaluation = evaluate(model, [record("nobody", *nobody, *marks)])
@@ -142,10 +141,14 @@ def test_segments_that_cannot_be_answered_are_predicted_as_none(three_people: li
     assert {(p.confidence, p.unknown) for p in evaluation.predictions} == {(None, None)}
 
 
-def test_the_report_shows_accuracy_interval_classes_and_confusion() -> None:
+def shown(evaluation: Evaluation) -> str:
     console = Console(record=True, width=120)
-    console.print(report(FIVE, seconds=1.25))
-    text = console.export_text()
+    console.print(report(evaluation, seconds=1.25))
+    return console.export_text()
+
+
+def test_the_report_shows_accuracy_interval_classes_and_confusion() -> None:
+    text = shown(FIVE)
     low, high = wilson_interval(3, 5)
     assert f"60.0% (3 of 5, 95 % interval {low:.1%} to {high:.1%})" in text
     assert "33.3%" in text
@@ -161,9 +164,7 @@ def test_the_report_of_many_answers_tells_how_far_confidence_is_off() -> None:
 
 
 def test_the_report_of_answers_without_confidence_leaves_it_open() -> None:
-    console = Console(record=True, width=120)
-    console.print(report(WITHOUT_CONFIDENCE, seconds=1.25))
-    text = console.export_text()
+    text = shown(WITHOUT_CONFIDENCE)
     push = next(line for line in text.splitlines() if "push" in line).replace("│", " ").split()
     assert push == ["push", "3", "1", "1", "33.3%", "-", "-"]
     assert "unknown," not in text
@@ -187,7 +188,5 @@ def test_the_report_of_right_answers_has_no_confusion() -> None:
 
 @pytest.mark.parametrize("labels", [["reach [left]", "reach [right]"], ["reach [/left]", "b"]])
 def test_the_report_shows_labels_as_they_are(labels: list[str]) -> None:
-    console = Console(record=True, width=120)
     predictions = tuple(Prediction("a.mcap", str(k), labels[k % 2], labels[0]) for k in range(4))
-    console.print(report(Evaluation(predictions), seconds=1.0))
-    assert all(console.export_text(clear=False).count(label) == 2 for label in labels)
+    assert all(shown(Evaluation(predictions)).count(label) == 2 for label in labels)

@@ -65,17 +65,6 @@ def test_only_the_attended_part_is_learned(samples: list[SegmentSample]) -> None
     assert models[0].metadata.attention == "right_arm"
 
 
-def test_progress_names_every_stage_to_its_end(samples: list[SegmentSample]) -> None:
-    told: list[tuple[str, int, int]] = []
-    train(samples, TINY_PAPER, progress=lambda *done: told.append(done))
-    ends = [(stage, total) for stage, done, total in told if done == total]
-    assert ends == [
-        ("layer 1", TINY_PAPER.layer1.steps),
-        ("layer 2", TINY_PAPER.layer2.steps),
-        ("layer 3", TINY_PAPER.epochs),
-    ]
-
-
 def test_median_neighbour_distance_by_hand() -> None:
     """Nearest neighbours are 1, 1, 2 and 6 away."""
     assert median_neighbour_distance2(np.array([[0.0], [1.0], [3.0], [9.0]])) == (1 + 4) / 2

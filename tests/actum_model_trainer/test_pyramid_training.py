@@ -10,9 +10,9 @@ from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.confidence import familiarity_threshold
-from actum_model_trainer.discriminants import fit_discriminants, folds_of
+from actum_model_trainer.discriminants import Discriminants, fit_discriminants, folds_of
 from actum_model_trainer.hand_preference import people_prefer_one_hand
-from actum_model_trainer.median_distances import median_quantization_error2
+from actum_model_trainer.median_distances import SMALLEST_ERROR2, median_quantization_error2
 from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
@@ -32,13 +32,22 @@ def trained(samples: list[SegmentSample], preset: PyramidPreset = TINY, seed: in
     return model
 
 
-def pooled(model: PyramidModel, sample: SegmentSample, fraction: float = 1.0) -> np.ndarray:
+def pooled(model: PyramidModel, sample: SegmentSample, fraction: float) -> np.ndarray:
     codes = [frame.activity for frame in encoded(model, sample)]
     return model.pyramid.vector(model.prefix_sums(codes[: round(fraction * len(codes))]))
 
 
-def wanted(model: PyramidModel, samples: list[SegmentSample]) -> np.ndarray:
-    return np.eye(len(model.labels))[[model.labels.index(sample.label) for sample in samples]]
+def assert_fitted(
+    model: PyramidModel, samples: list[SegmentSample], fractions: tuple[float, ...], atol: float
+) -> Discriminants:
+    """The model's first stage scores these shares of the samples as discriminants that were fitted to them."""
+    repeated = [sample for sample in samples for _ in fractions]
+    vectors = np.stack([pooled(model, sample, fraction) for sample in samples for fraction in fractions])
+    indicators = np.eye(len(model.labels))[[model.labels.index(sample.label) for sample in repeated]]
+    fitted = fit_discriminants(vectors, indicators, folds_of(repeated), PLAIN.shrinkage)
+    scores = vectors @ model.stages.axes[0] + model.stages.offsets[0]
+    np.testing.assert_allclose(scores, fitted.training_scores, atol=atol)
+    return fitted
 
 
 def without_arms(sample: SegmentSample) -> SegmentSample:
@@ -52,11 +61,7 @@ def without_arms(sample: SegmentSample) -> SegmentSample:
 
 def test_axes_are_fitted_to_what_the_recogniser_pools(samples: list[SegmentSample]) -> None:
     model = trained(samples, PLAIN)
-    vectors = np.stack([pooled(model, sample) for sample in samples])
-    axes = fit_discriminants(vectors, wanted(model, samples), folds_of(samples), PLAIN.shrinkage)
-    np.testing.assert_allclose(
-        vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.training_scores, atol=0.02
-    )
+    axes = assert_fitted(model, samples, (1.0,), atol=0.02)
     usual = familiarity_threshold(axes.cross_validated_scores, samples, PLAIN)
     assert model.metadata.familiar == pytest.approx(usual, abs=0.02)
 
@@ -97,12 +102,7 @@ def test_samples_of_few_people_are_augmented_more(samples: list[SegmentSample]) 
 def test_each_stage_is_fitted_to_that_share_of_the_action(samples: list[SegmentSample]) -> None:
     model = trained(samples, replace(PLAIN, stages=((0.3, 0.5), (1.0,))))
     assert model.metadata.fractions == pytest.approx([0.4, 1.0])
-    vectors = np.stack([pooled(model, sample, fraction) for sample in samples for fraction in (0.3, 0.5)])
-    twice = [sample for sample in samples for _ in range(2)]
-    axes = fit_discriminants(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
-    np.testing.assert_allclose(
-        vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.training_scores, atol=0.05
-    )
+    assert_fitted(model, samples, (0.3, 0.5), atol=0.05)
 
 
 def changing_arms(sample: SegmentSample) -> SegmentSample:
@@ -119,12 +119,7 @@ def test_what_was_seen_so_far_is_read_by_the_arm_that_acts_so_far(samples: list[
     early, late = ({sample.acting_hands[k] for sample in changing} for k in (7, -1))
     assert ("left" in early, late) == (True, {"right"})
     model = trained(changing, replace(PLAIN, stages=((0.2, 0.3), (1.0,))))
-    vectors = np.stack([pooled(model, sample, fraction) for sample in changing for fraction in (0.2, 0.3)])
-    twice = [sample for sample in changing for _ in range(2)]
-    axes = fit_discriminants(vectors, wanted(model, twice), folds_of(twice), PLAIN.shrinkage)
-    np.testing.assert_allclose(
-        vectors @ model.stages.axes[0] + model.stages.offsets[0], axes.training_scores, atol=0.05
-    )
+    assert_fitted(model, changing, (0.2, 0.3), atol=0.05)
 
 
 def test_durations_are_those_of_the_samples(samples: list[SegmentSample]) -> None:
@@ -247,18 +242,14 @@ def mean_confidence(samples: list[SegmentSample]) -> float:
     return float(np.mean([answer(model, encoded(model, sample)).confidence for sample in samples]))
 
 
-def test_median_quantization_error_by_hand() -> None:
-    """One unit at 0: squared distances 1, 4 and 9."""
-    assert median_quantization_error2(Som(1, 1, np.zeros((1, 1))), np.array([[1.0], [2.0], [3.0]])) == 4.0
-
-
-def test_median_quantization_error_scales_up_what_is_missing() -> None:
-    """Two of three components known: 1 + 1 stands for 3."""
-    assert median_quantization_error2(Som(1, 1, np.zeros((1, 3))), np.array([[1.0, np.nan, 1.0]])) == 3.0
-
-
-def test_a_median_quantization_error_is_never_zero() -> None:
-    assert median_quantization_error2(Som(1, 1, np.ones((1, 3))), np.ones((4, 3))) > 0
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [([[1.0], [2.0], [3.0]], 4.0), ([[1.0, np.nan, 1.0]], 3.0), ([[0.0, 0.0, 0.0]] * 4, SMALLEST_ERROR2)],
+    ids=["of 1, 4 and 9", "two of three components known: 1 + 1 stands for 3", "never zero"],
+)
+def test_median_quantization_error_by_hand(rows: list[list[float]], expected: float) -> None:
+    """One unit at 0."""
+    assert median_quantization_error2(Som(1, 1, np.zeros((1, len(rows[0])))), np.array(rows)) == expected
 
 
 @pytest.mark.parametrize("friends", [1, 2])

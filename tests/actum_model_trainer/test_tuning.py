@@ -187,9 +187,39 @@ def picked(weighed: Weighed, most_per_min: float | None = None) -> Choice:
     return chosen([weighed], most_per_min)
 
 
-def test_of_two_sensitivities_that_with_the_better_f1_is_chosen() -> None:
-    weighed = heard(wave={None: DONE["wave"], 0.5: range(0, 50, 10)}, clap={None: DONE["clap"], 0.5: DONE["clap"]})
-    assert picked(weighed).best.options == SpottingOptions()
+AT_ONCE = [0, 1.2, 2.4, 3.6, 20, 40]
+PICKED = {
+    "of two sensitivities that with the better F1": (
+        heard(wave={None: DONE["wave"], 0.5: range(0, 50, 10)}, clap={None: DONE["clap"], 0.5: DONE["clap"]}),
+        SpottingOptions(),
+    ),
+    "an action that is only false alarms is switched off": (
+        heard(wave={None: DONE["wave"]}, clap={None: [150, 180]}, shrug={None: [152, 190, 230]}),
+        SpottingOptions(disabled=frozenset({"clap", "shrug"})),
+    ),
+    "a cooldown for the action that is found twice and for no other": (
+        heard(wave={None: [at + more for at in DONE["wave"] for more in (0, 1.3)]}, clap={None: DONE["clap"]}),
+        SpottingOptions(cooldown_s={"wave": 0.5}),
+    ),
+    "a pause where wrong answers follow right ones at once": (
+        heard(wave={None: [*DONE["wave"], *(at + 1.4 for at in DONE["clap"])]}, clap={None: DONE["clap"]}),
+        SpottingOptions(shortest_pause_s=0.5),
+    ),
+    "nothing for a single false alarm": (
+        heard(wave={None: [*DONE["wave"], 1.3]}, clap={None: DONE["clap"]}, shrug={None: [150]}),
+        SpottingOptions(),
+    ),
+    "no pause that would spare two false waves and lose two of those that are done at once": (
+        heard({"wave": AT_ONCE}, wave={None: [*AT_ONCE, 21.3, 41.3]}),
+        SpottingOptions(),
+    ),
+}
+
+
+@pytest.mark.parametrize("case", PICKED)
+def test_the_settings_that_suit_are_picked(case: str) -> None:
+    weighed, options = PICKED[case]
+    assert picked(weighed).best.options == options
 
 
 def test_where_few_false_alarms_are_wanted_the_best_that_has_as_few_is_chosen() -> None:
@@ -205,35 +235,6 @@ def test_where_none_has_as_few_that_with_the_fewest_is_chosen() -> None:
     choice = picked(weighed, most_per_min=0.1)
     assert choice.best.options.false_alarms_per_min == 0.5
     assert not choice.best.keeps_to(0.1)
-
-
-def test_an_action_that_is_only_false_alarms_is_switched_off() -> None:
-    weighed = heard(wave={None: DONE["wave"]}, clap={None: [150, 180]}, shrug={None: [152, 190, 230]})
-    assert picked(weighed).best.options == SpottingOptions(disabled=frozenset({"clap", "shrug"}))
-
-
-def test_a_cooldown_is_given_to_the_action_that_is_told_twice_and_to_no_other() -> None:
-    twice = sorted([*DONE["wave"], *(second + 1.3 for second in DONE["wave"])])
-    assert picked(heard(wave={None: twice}, clap={None: DONE["clap"]})).best.options == SpottingOptions(
-        cooldown_s={"wave": 0.5}
-    )
-
-
-def test_a_pause_is_set_where_wrong_answers_follow_right_ones_at_once() -> None:
-    after_claps = [second + 1.4 for second in DONE["clap"]]
-    weighed = heard(wave={None: [*DONE["wave"], *after_claps]}, clap={None: DONE["clap"]})
-    assert picked(weighed).best.options == SpottingOptions(shortest_pause_s=0.5)
-
-
-def test_a_single_false_alarm_is_no_reason_for_a_setting() -> None:
-    once = heard(wave={None: [*DONE["wave"], 1.3]}, clap={None: DONE["clap"]}, shrug={None: [150]})
-    assert picked(once).best.options == SpottingOptions()
-
-
-def test_no_setting_is_chosen_that_loses_as_much_as_it_spares() -> None:
-    """Half a second between two waves would spare two false ones, and lose two of those that are done at once."""
-    done = [0, 1.2, 2.4, 3.6, 20, 40]
-    assert picked(heard({"wave": done}, wave={None: [*done, 21.3, 41.3]})).best.options == SpottingOptions()
 
 
 def test_settings_are_also_held_against_recordings_they_were_not_picked_on() -> None:

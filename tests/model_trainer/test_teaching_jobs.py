@@ -40,33 +40,36 @@ def teacher(taught: Path, tmp_path: Path) -> Teacher:
     return Teacher(tmp_path / "copy")
 
 
-def done_here(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, request: JobRequest) -> list[dict]:
-    """Do a job in this process, with a small preset; return the lines that it prints."""
-    told = json.dumps({"kind": request.kind, "folder": str(request.folder), **request.fields})
-    monkeypatch.setattr(sys, "argv", ["job", told])
-    monkeypatch.setattr(job, "PRESETS", {"pyramid": TINY})
-    job.main()
-    return [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+Finish = Callable[[], dict[str, Any]]
 
 
-def finish(teacher: Teacher, capsys: Any, monkeypatch: Any) -> dict[str, Any]:
-    lines = done_here(capsys, monkeypatch, teacher.jobs[-1].request)
-    assert all(0 <= line["done"] <= 1 for line in lines[:-1])
-    teacher.jobs[-1].news = Ended(lines[-1].get("result"), lines[-1].get("error", ""))
-    teacher.tick()
-    return teacher.ask("job", job=teacher.told[-1].job.id)
+@pytest.fixture
+def finish(teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Finish:
+    """Do the newest job in this process, with a small preset; return what became of it."""
+
+    def done_here() -> dict[str, Any]:
+        asked = teacher.jobs[-1].request
+        arguments = json.dumps({"kind": asked.kind, "folder": str(asked.folder), **asked.fields})
+        monkeypatch.setattr(sys, "argv", ["job", arguments])
+        monkeypatch.setattr(job, "PRESETS", {"pyramid": TINY})
+        job.main()
+        lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+        assert all(0 <= line["done"] <= 1 for line in lines[:-1])
+        teacher.jobs[-1].news = Ended(lines[-1].get("result"), lines[-1].get("error", ""))
+        teacher.tick()
+        return teacher.ask("job", job=teacher.told[-1].job.id)
+
+    return done_here
 
 
-def test_a_set_is_trained_put_into_use_and_undone(
-    teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_set_is_trained_put_into_use_and_undone(teacher: Teacher, finish: Finish) -> None:
     classifier = WatchedModel(teacher.model)
     assert classifier.poll(Counters()) is None
     tiny_model().save(teacher.model)
     first = classifier.poll(Counters())
     assert first is not None and teacher.tick(20).model == first.id, "one that somebody else has put there"
     teacher.ask("train", set="kitchen")
-    ended = finish(teacher, capsys, monkeypatch)
+    ended = finish()
     assert (ended["state"], ended["message"]) == ("done", f"model {ended['result']['model']}: 20 examples of 2 actions")
     assert not list((teacher.folder / "jobs").glob("*.work"))
     taught = ended["result"]["model"]
@@ -104,11 +107,9 @@ def test_models_are_compared_and_deleted_but_not_the_one_in_use(teacher: Teacher
             teacher.ask(command, model="../x")
 
 
-def test_a_set_of_two_people_is_tested_by_people(
-    teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_set_of_two_people_is_tested_by_people(teacher: Teacher, finish: Finish) -> None:
     teacher.ask("evaluate", set="kitchen")
-    result = finish(teacher, capsys, monkeypatch)["result"]
+    result = finish()["result"]
     assert (result["by"], result["labels"], result["confusion"]) == ("people", ["goggles", "wave"], [[10, 0], [0, 10]])
     assert (result["accuracy"], result["n"]) == (1.0, 20)
     assert result["false_alarms_per_min"] is not None
@@ -116,13 +117,11 @@ def test_a_set_of_two_people_is_tested_by_people(
 
 
 @pytest.mark.long
-def test_a_set_of_one_person_is_tested_by_examples(
-    teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_set_of_one_person_is_tested_by_examples(teacher: Teacher, finish: Finish) -> None:
     for example in [each["id"] for each in teacher.examples() if each["person"] == "bert"]:
         teacher.ask("delete", set="kitchen", example=example)
     teacher.ask("evaluate", set="kitchen")
-    result = finish(teacher, capsys, monkeypatch)["result"]
+    result = finish()["result"]
     assert (result["by"], result["n"], result["accuracy"]) == ("examples", 10, 1.0)
     assert any(
         "All examples are of anna: record 5 examples of each action by a second person." in it
@@ -136,13 +135,11 @@ ONE_ACTION = (
 )
 
 
-def test_what_cannot_be_trained_fails_with_the_reason(
-    teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_cannot_be_trained_fails_with_the_reason(teacher: Teacher, finish: Finish) -> None:
     teacher.ask("delete_action", set="kitchen", label="wave")
     for command in ("train", "evaluate"):
         teacher.ask(command, set="kitchen")
-        ended = finish(teacher, capsys, monkeypatch)
+        ended = finish()
         assert ended["state"] == "failed" and ended["result"] is None
         assert ended["message"] == ONE_ACTION
     with pytest.raises(Refusal, match="no preset 'none': use one of"):
@@ -256,16 +253,13 @@ def test_a_file_comes_in_pieces_that_follow_one_another(teacher: Teacher) -> Non
 
 @pytest.mark.parametrize("pose_model", [None, "none.task"])
 def test_a_video_that_is_none_or_without_a_pose_model_fails_with_the_reason(
-    teacher: Teacher,
-    capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
-    pose_model: str | None,
+    teacher: Teacher, finish: Finish, monkeypatch: pytest.MonkeyPatch, pose_model: str | None
 ) -> None:
     if pose_model is not None:
         monkeypatch.setenv("ACTUM_POSE_MODEL", pose_model)
     teacher.ask("upload", name="clip.mp4", offset=0, data=base64.b64encode(b"no video").decode(), last=True)
     teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave", person="anna")
-    ended = finish(teacher, capsys, monkeypatch)
+    ended = finish()
     assert ended["state"] == "failed"
     assert any(word in ended["message"] for word in ("not a video", "pose model", "MediaPipe", "none.task"))
     assert len(teacher.examples()) == 20
@@ -273,13 +267,11 @@ def test_a_video_that_is_none_or_without_a_pose_model_fails_with_the_reason(
 
 @pytest.mark.data
 @pytest.mark.pose_model
-def test_examples_are_cut_out_of_a_video(
-    teacher: Teacher, data: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_examples_are_cut_out_of_a_video(teacher: Teacher, data: Path, finish: Finish) -> None:
     video = next(path for path in sorted((data / "florence3d_rgb").rglob("*")) if path.suffix in (".avi", ".mp4"))
     teacher.ask("upload", name="clip.avi", offset=0, data=base64.b64encode(video.read_bytes()).decode(), last=True)
     teacher.ask("import_video", set="kitchen", upload="clip.avi", label="drink", person="carl", count=1)
-    ended = finish(teacher, capsys, monkeypatch)
+    ended = finish()
     assert (ended["state"], ended["message"]) == ("done", "1 example cut out of the video")
     (example,) = [each for each in teacher.examples() if each["person"] == "carl"]
     assert (example["label"], example["origin"], example["take"]) == ("drink", "cut", ended["result"]["take"])

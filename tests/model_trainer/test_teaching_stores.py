@@ -1,7 +1,6 @@
 """What lies in the trainer's folder: a user's files stay, what cannot be read is told, what vanishes ends nothing."""
 
 import base64
-import contextlib
 import json
 import os
 import shutil
@@ -152,30 +151,21 @@ NOTHINGS: dict[str, bytes] = {
 }
 
 
-def put_directory(path: Path) -> None:
-    path.mkdir()
-
-
-def put_loop(path: Path) -> None:
-    path.symlink_to(path)
-
-
-def put_dangling(path: Path) -> None:
-    path.symlink_to(path.parent / "nowhere")
-
-
-def put_pipe(path: Path) -> None:
-    os.mkfifo(path)
-
-
 PLACED: dict[str, Callable[[Path], object]] = {
-    "a directory": put_directory,
-    "a loop": put_loop,
-    "a dangling link": put_dangling,
-    "a pipe": put_pipe,
+    "a directory": Path.mkdir,
+    "a loop": lambda path: path.symlink_to(path),
+    "a dangling link": lambda path: path.symlink_to(path.parent / "nowhere"),
+    "a pipe": os.mkfifo,
     **{name: partial(Path.write_bytes, data=content) for name, content in NOTHINGS.items()},
 }
 FEW = ("a directory", "a loop", "a dangling link", "a pipe", "empty")
+
+
+def attempt(teacher: Teacher, command: str, **fields: Any) -> None:
+    try:
+        teacher.ask(command, **fields)
+    except Refusal as refusal:
+        assert str(refusal)
 
 
 def go_on(teacher: Teacher) -> None:
@@ -187,8 +177,7 @@ def go_on(teacher: Teacher) -> None:
     names += ["record", "discard", "create_set", "rename_set", "delete_set"]
     for name in names:
         asked = {field: some[field] for field in fields_of(teacher, name) if field in some}
-        with contextlib.suppress(Refusal):
-            teacher.ask(name, **asked)
+        attempt(teacher, name, **asked)
     teacher.tick(12)
 
 
@@ -317,13 +306,6 @@ def test_a_take_whose_folder_vanishes_is_lost_with_the_reason_and_another_can_be
     attempt(teacher, "record", set="garden", label="nod")
     attempt(teacher, "discard")
     go_on(teacher)
-
-
-def attempt(teacher: Teacher, command: str, **fields: Any) -> None:
-    try:
-        teacher.ask(command, **fields)
-    except Refusal as refusal:
-        assert str(refusal)
 
 
 def test_a_take_that_cannot_be_begun_leaves_nothing_in_progress(

@@ -184,7 +184,7 @@ def _repeating(stream: StreamRecorder, label: str, times: int, stop: threading.E
             say("that was the last: stopping")
         stop.set()
 
-    return RepetitionRecorder(stream, label, times, lambda count: say(f"{min(count, times)} of {times}"), done)
+    return RepetitionRecorder(stream, label, times, lambda count: say(f"{count} of {times}"), done)
 
 
 def _report_cuts(repeating: RepetitionRecorder, output: Path) -> None:
@@ -195,10 +195,10 @@ def _report_cuts(repeating: RepetitionRecorder, output: Path) -> None:
             "left out of training, or uncut repetitions would be learnt as background: once it is mended, add --all",
             style="yellow",
         )
-    if repeating.cuts is None or repeating.first_ns is None:
-        say(f"this does not count, nothing was cut: {repeating.why_none}, and record it again", style="red")
+    if repeating.cuts is None or repeating.counter.first_ns is None:
+        say(f"this does not count, nothing was cut: {repeating.counter.why_none}, and record it again", style="red")
         return
-    for line in cut_lines(repeating.cuts, repeating.first_ns):
+    for line in cut_lines(repeating.cuts, repeating.counter.first_ns):
         say(line)
     for doubt in repeating.cuts.doubts:
         say(doubt, style="yellow")

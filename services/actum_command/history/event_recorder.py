@@ -74,12 +74,11 @@ class EventRecorder:
 
     def _place(self, marks: Iterable[Placed]) -> None:
         """Store marks with the stamps of their answers; those that nothing has answered are counted."""
-        for pending, bounds in marks:
-            if bounds is None:
-                self.counters.reject("mark_without_stamp", f"{pending.mark.segment_id}: nothing has answered it")
-                continue
-            stamp_ns = bounds.stamp_ns(pending.mark)
-            self._write(pending.mark.model_copy(update={"stamp_ns": bounds.start_ns if stamp_ns is None else stamp_ns}))
+        for mark, _ in marks:
+            if mark.stamp_ns is None:
+                self.counters.reject("mark_without_stamp", f"{mark.segment_id}: nothing has answered it")
+            else:
+                self._write(mark)
 
     def _write(self, message: Message) -> None:
         try:

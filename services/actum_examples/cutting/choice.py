@@ -133,7 +133,7 @@ def _running_maximum(values: Array) -> tuple[Array, Indices]:
 
 
 def _evident(course: Course, bursts: Indices) -> Mask:
-    """Tell of each burst (b, 2) whether some joint goes farther than it does while the person stands still."""
+    """Return for each burst (b, 2) whether some joint goes farther than it does while the person stands still."""
     least_m = np.maximum(LEAST_WAY_M, EVIDENT_NOISE * course.noise_m)
     steady = averaged(course.postures, EVIDENT_S)
     befores = np.maximum(bursts[:, 0] - MARGIN, 0)

@@ -16,13 +16,13 @@ COUNT_EVERY_S = 0.5
 COUNT_SHARE = 0.05
 """Time between two counts as a share of the stream so far: counting takes longer the longer the stream is."""
 LAST_REST_S = 3.0
-"""Rest after which the last repetition is over, as the person is told."""
+"""Rest after which the last repetition is over."""
 REST_RATIO = 2.0
 """That rest is also longer than any before, by this factor: a stop within each of them is no end."""
 ONE_REST_S = 1.0
-"""Rest after which a single movement counts as one repetition: no other tells that it is one."""
+"""Rest after which a single movement counts as one repetition: there is no other to compare it with."""
 NOW_S = 0.3
-"""Time over which it is told whether a person moves now."""
+"""Time over which the activity of now is averaged."""
 MOVING = 0.6
 """Activity above which a person moves: it is about 1 in the midst of a movement, and 0.4 in a noisy sensor's rest."""
 NOBODY = "nobody was in view: stand where the camera sees your whole body"
@@ -41,21 +41,24 @@ class RepetitionCounter:
     Attributes:
         asked: how many repetitions there are to be.
         first_ns: stamp of the first skeleton, None before it came.
+        sensor: of the skeletons; empty before the first.
         so_far: the newest count; None before anybody moved.
     """
 
     def __init__(self, asked: int, agent: int | None = None) -> None:
         self.asked = asked
         self.first_ns: int | None = None
+        self.sensor = ""
         self.so_far: Cuts | None = None
         self._agent = agent
         self._tracks = PersonTracks()
         self._next_count_ns = 0
 
     def take(self, skeleton: Skeleton) -> bool:
-        """Take the next frame; tell whether it was time to count anew."""
+        """Take the next frame; return whether the repetitions were counted anew."""
         if self.first_ns is None or skeleton.stamp_ns < self.first_ns:
             self.first_ns = self._next_count_ns = skeleton.stamp_ns
+        self.sensor = skeleton.sensor
         self._tracks.take(skeleton)
         if skeleton.stamp_ns < self._next_count_ns:
             return False
@@ -66,15 +69,18 @@ class RepetitionCounter:
 
     @property
     def count(self) -> int:
-        """How many repetitions there are so far."""
-        found = 0 if self.so_far is None else len(self.so_far.repetitions)
-        return found if found != 1 or self._resting_s > ONE_REST_S else 0
+        """How many repetitions there are so far, at most as many as were asked for."""
+        if self.so_far is None:
+            return 0
+        found = len(self.so_far.repetitions)
+        return found if found != 1 or self.so_far.resting_s > ONE_REST_S else 0
 
     @property
     def finished(self) -> bool:
         """Whether the last repetition is followed by a long rest."""
-        longest_s = 0.0 if self.so_far is None else self.so_far.longest_pause_s
-        return self.count >= self.asked and self._resting_s > max(LAST_REST_S, REST_RATIO * longest_s)
+        if self.so_far is None or self.count < self.asked:
+            return False
+        return self.so_far.resting_s > max(LAST_REST_S, REST_RATIO * self.so_far.longest_pause_s)
 
     @property
     def phase(self) -> Literal["waiting", "moving", "resting"]:
@@ -100,8 +106,7 @@ class RepetitionCounter:
             return None
         if not 1 < alike < self.asked or _least_likeness(all_asked) >= MUCH_LESS_ALIKE * _least_likeness(self.so_far):
             return all_asked
-        told = Doubt(too_few(alike, self.asked), None)
-        return replace(self.so_far, doubted=(told, *self.so_far.doubted))
+        return replace(self.so_far, doubted=(Doubt(too_few(alike, self.asked), None), *self.so_far.doubted))
 
     @property
     def why_none(self) -> str:
@@ -109,10 +114,6 @@ class RepetitionCounter:
         if not self._courses():
             return NOBODY
         return STILL if self.so_far is None else UNLIKE.format(self.asked)
-
-    @property
-    def _resting_s(self) -> float:
-        return 0.0 if self.so_far is None else self.so_far.resting_s
 
     def _courses(self) -> list[Course]:
         return [course for course in self._tracks.courses() if self._agent in (None, course.agent)]

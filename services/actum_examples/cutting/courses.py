@@ -83,8 +83,14 @@ class PersonTracks:
     def take(self, skeleton: Skeleton) -> None:
         """Take the next frame of one sensor."""
         for posture in self._preprocessor.handle(skeleton):
-            if isinstance(posture, Posture) and posture.agent:
-                self._add(posture)
+            if not isinstance(posture, Posture) or not posture.agent:
+                continue
+            frame = frame_of(posture, 0, self._filters.setdefault(posture.agent, KinematicsFilter()))
+            if frame.kinematics is not None:
+                speeds_mps = np.linalg.norm(frame.kinematics.velocity, axis=1) / LAG_TIME_CONSTANT_S
+                joints = frame.kinematics.posture.astype(np.float32)
+                instant = _Instant(frame.stamp_ns, joints, speeds_mps.astype(np.float32), frame.distance_m)
+                self._instants.setdefault(posture.agent, []).append(instant)
 
     def courses(self) -> list[Course]:
         """Return the courses so far, by person, those of one person in order."""
@@ -94,16 +100,6 @@ class PersonTracks:
             for unbroken in _without_breaks(instants)
             if len(unbroken) >= LEAST_FRAMES
         ]
-
-    def _add(self, posture: Posture) -> None:
-        smoothing = self._filters.setdefault(posture.agent, KinematicsFilter())
-        frame = frame_of(posture, 0, smoothing)
-        if frame.kinematics is None:
-            return
-        speeds_mps = np.linalg.norm(frame.kinematics.velocity, axis=1) / LAG_TIME_CONSTANT_S
-        joints = frame.kinematics.posture.astype(np.float32)
-        instant = _Instant(frame.stamp_ns, joints, speeds_mps.astype(np.float32), frame.distance_m)
-        self._instants.setdefault(posture.agent, []).append(instant)
 
 
 def recorded_courses(recording: Recording, sensor: str) -> list[Course]:

@@ -11,7 +11,7 @@ from actum_examples.cutting.choice import Chain
 from actum_examples.cutting.courses import RATE_HZ, Course
 
 UNLIKE = 0.3
-"""A repetition less like the most typical one is told: of such in MSRC-12 a sixth are none, of others one in 40."""
+"""A repetition less like the most typical one is doubted: of such in MSRC-12 a sixth are none, of others one in 40."""
 TWICE = 1.6
 """A repetition that takes longer than the median by this factor may be two."""
 STOP = 0.5

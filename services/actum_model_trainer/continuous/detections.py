@@ -1,6 +1,6 @@
 """What was found in recordings without marks, what was done in them, and when anybody was seen; as JSON."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from statistics import median_high
 from typing import Any, Protocol
@@ -110,19 +110,6 @@ class Found:
             "truths": [asdict(truth) for truth in self.truths],
             "seen": [asdict(stretch) for stretch in self.seen],
         }
-
-    @classmethod
-    def of_json(cls, values: Mapping[str, Any]) -> "Found":
-        """Read what `as_json` returned; other keys are ignored.
-
-        Raises:
-            KeyError, TypeError: a key is missing, or another one is in its place.
-        """
-        return cls(
-            tuple(Detection(**each) for each in values["detections"]),
-            tuple(Truth(**each) for each in values["truths"]),
-            tuple(Stretch(**each) for each in values["seen"]),
-        )
 
 
 def point_fractions(truths: Iterable[Truth]) -> dict[str, float]:

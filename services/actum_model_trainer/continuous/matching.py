@@ -3,7 +3,7 @@
 Each detection claims the one truth of its file, agent and label that it fits best, and a truth takes the best of those
 that claim it; all others are false. That is the segmental F1's matching (Lea, Flynn, Vidal, Reiter, Hager 2017). A
 matching of largest size would give a detection that lost its truth a second choice: an answer that reaches into two
-truths, told twice, would be right twice.
+truths, given twice, would be right twice.
 """
 
 from collections import defaultdict

@@ -1,11 +1,11 @@
 """Scores of what was found without marks: events, boundaries, action points, false detections, latency."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -27,6 +27,7 @@ POINT_TOLERANCE_NS = 333_000_000
 FALSE_ALARMS_PER_MIN = 1.0
 """The rate of false detections at which recall is given: about what people bear."""
 MINUTE_NS = 60 * SECOND_NS
+T = TypeVar("T", bound=Interval)
 
 
 @dataclass(frozen=True)
@@ -129,6 +130,10 @@ def scores_of(found: Found) -> ContinuousScores:
     detections, truths = len(found.detections), len(found.truths)
     minutes = background_min(found.seen, found.truths)
     false = detections - len(matches)
+    done, answered = _of_one_person(found.truths), _of_one_person(found.detections)
+    in_background = sum(
+        all(overlap_ns(own, truth) <= 0 for truth in done[own.file, own.agent]) for own in found.detections
+    )
     return ContinuousScores(
         event=ActionScore(truths, detections, len(matches)),
         f1_at_iou={iou: f1(sum(match.fit >= iou for match in matches), detections, truths) for iou in IOUS},
@@ -136,10 +141,10 @@ def scores_of(found: Found) -> ContinuousScores:
         false_detections=false,
         background_min=minutes,
         false_per_min=false / minutes if minutes else None,
-        alarms_per_min=_alarms(found) / minutes if minutes else None,
+        alarms_per_min=in_background / minutes if minutes else None,
         latency_s=latency_s(matches),
-        fragmentations=_fragmentations(found),
-        merges=_merges(found),
+        fragmentations=_holding_several(found.truths, answered),
+        merges=_holding_several(found.detections, done),
         recall_at_rate=_recall_at(FALSE_ALARMS_PER_MIN * minutes, found) if minutes else None,
         per_action=_per_action(found, matches),
     )
@@ -171,9 +176,7 @@ def latency_s(matches: Sequence[Match]) -> tuple[float, float] | None:
 
 def background_min(seen: Iterable[Stretch], truths: Iterable[Truth]) -> float:
     """Return for how many minutes people were seen outside the truths, each person's time counted."""
-    done: defaultdict[tuple[str, int], list[Truth]] = defaultdict(list)
-    for truth in truths:
-        done[truth.file, truth.agent].append(truth)
+    done = _of_one_person(truths)
     return sum(_outside_ns(stretch, done[stretch.file, stretch.agent]) for stretch in seen) / MINUTE_NS
 
 
@@ -202,32 +205,20 @@ def _recall_at(most_false: float, found: Found) -> float:
     return best / len(found.truths) if found.truths else 0.0
 
 
-def _alarms(found: Found) -> int:
-    """Count the detections that have no time in common with any truth of their agent."""
-    done = _of_one_person(found.truths)
-    return sum(all(overlap_ns(own, truth) <= 0 for truth in done[own.file, own.agent]) for own in found.detections)
-
-
-def _fragmentations(found: Found) -> int:
-    held = _of_one_person(found.detections)
-    return sum(_held_mostly(truth, held[truth.file, truth.agent]) > 1 for truth in found.truths)
-
-
-def _merges(found: Found) -> int:
-    done = _of_one_person(found.truths)
-    return sum(_held_mostly(found_one, done[found_one.file, found_one.agent]) > 1 for found_one in found.detections)
-
-
-def _of_one_person(intervals: Iterable[Interval]) -> defaultdict[tuple[str, int], list[Interval]]:
-    of_person: defaultdict[tuple[str, int], list[Interval]] = defaultdict(list)
+def _of_one_person(intervals: Iterable[T]) -> defaultdict[tuple[str, int], list[T]]:
+    of_person: defaultdict[tuple[str, int], list[T]] = defaultdict(list)
     for interval in intervals:
         of_person[interval.file, interval.agent].append(interval)
     return of_person
 
 
-def _held_mostly(outer: Interval, others: Iterable[Interval]) -> int:
-    """Count the others of which more than half lies within an interval of the same file and agent."""
-    return sum(2 * overlap_ns(outer, other) > other.end_ns - other.start_ns for other in others)
+def _holding_several(outer: Iterable[Interval], of_person: Mapping[tuple[str, int], Sequence[Interval]]) -> int:
+    """Count the intervals that hold more than half of each of several others of the same file and agent."""
+    return sum(
+        sum(2 * overlap_ns(each, other) > other.end_ns - other.start_ns for other in of_person[each.file, each.agent])
+        > 1
+        for each in outer
+    )
 
 
 def _per_action(found: Found, matches: Sequence[Match]) -> dict[str, ActionScore]:

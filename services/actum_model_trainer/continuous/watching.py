@@ -1,4 +1,4 @@
-"""What the live nodes find in whole recordings when nobody tells them of any mark, beside what the marks say."""
+"""What the live nodes find in whole recordings without their marks, and what the marks say."""
 
 from collections.abc import Sequence
 
@@ -50,15 +50,12 @@ class Watcher:
             if message.valid:
                 self.presence.see(message.agent, message.stamp_ns)
         if not isinstance(message, Segment):
-            for answer in self._node.handle(message):
-                self._note(answer)
+            for put in self._node.handle(message):
+                if isinstance(put, Segment) and put.origin == AUTO:
+                    self._found_itself.add(put.segment_id)
+                elif isinstance(put, Action) and put.final and put.segment_id in self._found_itself:
+                    self.answers.append((put, self._newest_ns))
         return []
-
-    def _note(self, message: Message) -> None:
-        if isinstance(message, Segment) and message.origin == AUTO:
-            self._found_itself.add(message.segment_id)
-        elif isinstance(message, Action) and message.final and message.segment_id in self._found_itself:
-            self.answers.append((message, self._newest_ns))
 
 
 def found_by(
@@ -98,21 +95,15 @@ def watched(node: Node, recording: Recording, sensor: str, file: str) -> Found:
     watcher = Watcher(node, file)
     for _ in replay(watcher, classifier_input(recording, sensor)):
         raise AssertionError("the watcher puts nothing")
-    return Found(_detections(watcher, file), _truths(watcher, recording, file), watcher.presence.stretches)
-
-
-def _detections(watcher: Watcher, file: str) -> list[Detection]:
-    return [
+    detections = [
         Detection(file, action.agent, action.start_ns, action.end_ns, decided_ns, action.action, action.confidence)
         for action, decided_ns in watcher.answers
         if action.valid and action.action is not None and action.end_ns is not None
     ]
-
-
-def _truths(watcher: Watcher, recording: Recording, file: str) -> list[Truth]:
     points_ns = recording.action_points_ns
-    return [
+    truths = [
         Truth(file, each.agent, each.start_ns, each.end_ns, each.label, points_ns.get(each.segment_id))
         for each in watcher.marked.closed
         if each.label is not None and each.start_ns < each.end_ns
     ]
+    return Found(detections, truths, watcher.presence.stretches)

@@ -1,7 +1,7 @@
 """The head that all actions have in common, and how much of it each action's own head takes over.
 
-Own heads see few windows of their action. What tells any action from none, the common head learns from all of them:
-where actions are alike, each head is better as a mixture of both.
+Own heads see few windows of their action. The common head learns from all windows what distinguishes any action from
+none: where actions are alike, each head is better as a mixture of both.
 """
 
 import numpy as np

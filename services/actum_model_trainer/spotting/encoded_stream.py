@@ -4,10 +4,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum_model_trainer.augmentation import Variant
+from actum_model_trainer.pooling import summed_activities
 from actum_model_trainer.samples import LabelledStream
 from som_classifier.frame_activity import UM_PER_M
 from som_classifier.handedness import LimbSpreads, limb_moments
-from som_classifier.pyramid import Prefix, PrefixSums, quantised
+from som_classifier.pyramid import Prefix, PrefixSums
 from som_classifier.pyramid_model import PyramidModel
 
 
@@ -24,7 +25,7 @@ class EncodedStream:
         self._pyramid, self._mirrors = model.pyramid, model.metadata.mirrors
         seen = variant or Variant(stream.postures, stream.velocities)
         sides = [seen, seen.mirrored] if self._mirrors else [seen]
-        summed = [_sums(quantised(model.first.activities(side.postures, side.velocities))) for side in sides]
+        summed = [summed_activities(model.first, side) for side in sides]
         steps_um = np.rint(stream.motion * UM_PER_M).astype(np.int64).sum(axis=1)
         travelled_um = [0, *np.cumsum(steps_um).tolist()]
         self._prefixes = [
@@ -38,9 +39,3 @@ class EncodedStream:
         limbs = self._moments[last + 1] - self._moments[first]
         side = int(self._mirrors and LimbSpreads.of(limbs).left_handed)
         return self._pyramid.vector(PrefixSums(self._prefixes[first : last + 2], side))
-
-
-def _sums(activities: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
-    np.cumsum(activities, axis=0, out=sums[1:])
-    return sums

@@ -11,7 +11,7 @@ from actum.node import SECOND_NS
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
-from actum_model_trainer.spotting.heads_training import FoldedHeads
+from actum_model_trainer.spotting.heads_training import FoldedHeads, Folds
 from actum_model_trainer.spotting.training_windows import live_windows
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.spotting_model import PyramidSpottingMetadata
@@ -33,26 +33,6 @@ class ScannedStream:
     stream: LabelledStream
     windows: Indices
     completeness: Floats
-
-
-class Folds:
-    """The folds of cross-validation: people, or parts of each stream where there are fewer people than folds.
-
-    Args:
-        streams: of the training.
-        count: how many folds; some may hold no window.
-    """
-
-    def __init__(self, streams: Sequence[LabelledStream], count: int) -> None:
-        self._people = sorted({stream.person for stream in streams})
-        self.count = count
-
-    def of(self, stream: LabelledStream, windows: Indices) -> Indices:
-        """Return the fold of each window (n, 2; first and last frame) of a stream, (n,)."""
-        if len(self._people) >= self.count:
-            return np.full(len(windows), self._people.index(stream.person) % self.count)
-        parts: Indices = windows.sum(axis=1) * self.count // (2 * len(stream.stamps_ns))
-        return parts
 
 
 def scanned(

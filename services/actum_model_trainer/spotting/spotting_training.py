@@ -1,7 +1,7 @@
 """Training of the search for actions without marks, on a trained recogniser and whole streams.
 
 The heads are trained twice: the second time also on what the first ones took for actions in the background of people
-left out. Of all background that is the part that tells most.
+left out. Of all background that part teaches most.
 """
 
 from collections.abc import Sequence
@@ -16,11 +16,11 @@ from actum_model_trainer.continuous.scoring import background_min
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.common_head import mixed, mixed_heads
+from actum_model_trainer.spotting.heads_training import Folds, trained_heads
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
-from actum_model_trainer.spotting.scanning import Folds, ScannedStream, scanned
+from actum_model_trainer.spotting.scanning import ScannedStream, scanned
 from actum_model_trainer.spotting.threshold_choice import ThresholdChoice, chosen_threshold, false_alarms
 from actum_model_trainer.spotting.training_windows import training_windows, true_completeness, with_false_alarms
-from actum_model_trainer.spotting.window_vectors import trained_heads
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.pyramid_spotter import FEWEST_FRAMES
@@ -82,6 +82,7 @@ def _untuned(
 ) -> PyramidSpottingMetadata:
     """Return the metadata before a threshold is chosen."""
     durations_s, log_means, log_sds = _durations(streams, labels, search)
+    marked = sum((stream.marked for stream in streams), Found())
     return PyramidSpottingMetadata(
         interval_s=search.interval_s,
         lag_s=search.lag_s,
@@ -95,7 +96,7 @@ def _untuned(
         recalls=[],
         threshold=search.thresholds[0],
         probability=[1.0, 0.0],
-        background_s=_background_s(streams),
+        background_s=60 * background_min(marked.seen, marked.truths),
     )
 
 
@@ -125,9 +126,3 @@ def _probability(scanned: Sequence[ScannedStream], labels: Sequence[str]) -> lis
         for each in scanned
     ]
     return list(logistic_fit(answers, np.concatenate(is_right)))
-
-
-def _background_s(streams: Sequence[LabelledStream]) -> float:
-    """Return for how long people did none of the labelled actions (s)."""
-    marked = sum((stream.marked for stream in streams), Found())
-    return 60 * background_min(marked.seen, marked.truths)

@@ -18,7 +18,7 @@ BEARABLE_PER_MIN = 0.5
 COST_PER_MIN = 0.1
 """What each further one costs, in units of F1."""
 SHORTEST_BACKGROUND_MIN = 0.5
-"""Minutes of background below which false alarms a minute are not counted: too few to tell."""
+"""Minutes of background below which false alarms a minute are not counted: too few for a rate."""
 IOU = 0.5
 """Overlap at which bounds count as right in that choice."""
 

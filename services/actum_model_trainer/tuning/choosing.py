@@ -12,7 +12,7 @@ from som_classifier.spotting.spotted import SpottingOptions
 PAUSES_S = (0.2, 0.5, 1.0)
 """Shortest pauses that are tried (s): from that between two strokes of one action to a breath between two actions."""
 COOLDOWNS_S = (0.5, 1.0, 2.0, 3.0, 5.0)
-"""Cooldowns that are tried for each action (s): up to where nobody understands why a repetition is not told."""
+"""Cooldowns that are tried for each action (s): up to where nobody understands why a repetition is not answered."""
 FEWEST_SPARED = 2
 """False alarms that a setting has to spare beyond the right answers that it costs: a single one may be chance."""
 
@@ -32,7 +32,7 @@ class Offer:
     false_per_min: float | None
 
     def keeps_to(self, most_per_min: float | None) -> bool:
-        """Tell whether it gives no more false alarms a minute; yes where none are named or can be counted."""
+        """Return whether it gives no more false alarms a minute; yes where none are named or can be counted."""
         return most_per_min is None or self.false_per_min is None or self.false_per_min <= most_per_min
 
 
@@ -56,13 +56,13 @@ def chosen(weighed: Sequence[Weighed], most_per_min: float | None) -> Choice:
     return Choice(offers, min(offers, key=lambda offer: (offer.false_per_min or 0.0, -offer.score.f1)))
 
 
-def told(weighed: Sequence[Weighed], options: SpottingOptions) -> Found:
-    """Return what is told in all recordings with these options."""
+def found_in_all(weighed: Sequence[Weighed], options: SpottingOptions) -> Found:
+    """Return what is found in all recordings with these options."""
     return sum((each.trial.found(options) for each in weighed), Found())
 
 
 def held_out(weighed: Sequence[Weighed], most_per_min: float | None) -> Found:
-    """Return what is told in each recording with settings chosen on all others; there are at least two recordings."""
+    """Return what is found in each recording with settings chosen on all others; there are at least two recordings."""
     found = Found()
     for n, each in enumerate(weighed):
         found += each.trial.found(chosen([*weighed[:n], *weighed[n + 1 :]], most_per_min).best.options)
@@ -101,7 +101,7 @@ def _scores(weighed: Sequence[Weighed], wish: Wish) -> Scores:
 
 
 def _is_worth_it(before: Scores, after: Scores) -> bool:
-    """Tell whether a setting that only withholds answers makes them better, by more than chance may."""
+    """Return whether a setting that only withholds answers makes them better, by more than chance may."""
     less, more = total(after.values()), total(before.values())
     spared = (more.detections - more.right) - (less.detections - less.right)
     return less.f1 > more.f1 and spared - (more.right - less.right) >= FEWEST_SPARED

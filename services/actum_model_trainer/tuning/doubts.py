@@ -8,7 +8,7 @@ from actum_model_trainer.tuning.weighing import Weighed
 from som_classifier.model import Model
 
 SURE = 0.95
-"""Probability with which the true rate lies within the interval that is told: what is usual."""
+"""Probability with which the true rate lies within the interval that is reported: the usual one."""
 FEWEST_ACTIONS = 20
 """Done in the recordings: with fewer a single one moves the events F1 by more than settings do."""
 BISECTIONS = 60
@@ -67,10 +67,6 @@ def _mean_where(probability: float, events: int) -> float:
     low, high = 0.0, 10.0 + 3 * events
     for _ in range(BISECTIONS):
         middle = (low + high) / 2
-        low, high = (middle, high) if _at_most(events, middle) > probability else (low, middle)
+        at_most = sum(math.exp(n * math.log(middle) - middle - math.lgamma(n + 1)) for n in range(events + 1))
+        low, high = (middle, high) if at_most > probability else (low, middle)
     return (low + high) / 2
-
-
-def _at_most(events: int, mean: float) -> float:
-    """Return the probability of so many events or fewer in a Poisson distribution with a mean above 0."""
-    return sum(math.exp(n * math.log(mean) - mean - math.lgamma(n + 1)) for n in range(events + 1))

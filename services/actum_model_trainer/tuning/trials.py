@@ -38,12 +38,12 @@ class Trial:
     searched: dict[Sensitivity, Searched]
 
     def found(self, options: SpottingOptions) -> Found:
-        """Return what the classifier tells with these options; their sensitivity has to be one of the trial's."""
-        told: list[Detection] = []
+        """Return what the classifier publishes with these options; their sensitivity has to be one of the trial's."""
+        admitted: list[Detection] = []
         for stretch in self.searched[options.false_alarms_per_min]:
             admission = Admission(options)
-            told += [each for each in stretch if admission.admit(each.label, each.start_ns, each.end_ns) is None]
-        return replace(self.marked, detections=told)
+            admitted += [each for each in stretch if admission.admit(each.label, each.start_ns, each.end_ns) is None]
+        return replace(self.marked, detections=admitted)
 
 
 def tried(model: Model, recordings: Sequence[Recording], progress: Progress = silent) -> list[Trial]:
@@ -102,7 +102,7 @@ class _Searches:
         return _Several(spotters, self.stretches[-1], self._found)
 
     def _answer(self, stream: Stream, posture: Posture) -> None:
-        """Recognise what the newest frame showed as the classifier does, whatever is to be told of it."""
+        """Recognise what the newest frame showed as the classifier does, before it is admitted."""
         for into, found in self._found:
             closed = stream.cut(OpenSegment("", found.start_ns, posture.agent, end_ns=found.end_ns))
             usable = [frame for frame in closed.frames if frame.valid]

@@ -10,7 +10,7 @@ from actum_model_trainer.continuous.matching import intersection_over_union, mat
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.tuning.choosing import chosen, held_out, told
+from actum_model_trainer.tuning.choosing import chosen, found_in_all, held_out
 from actum_model_trainer.tuning.doubts import doubts
 from actum_model_trainer.tuning.trials import tried
 from actum_model_trainer.tuning.weighing import Weighed
@@ -74,7 +74,7 @@ def tuned(
         model: finds actions without marks.
         recordings: with marks, which are kept from the classifier.
         most_per_min: the false alarms a minute of background that are accepted; None for whatever is best.
-        progress: is told how far it is.
+        progress: is called with how far the tuning is.
 
     Raises:
         NoSpotterError: the model cannot find actions without marks.
@@ -82,15 +82,15 @@ def tuned(
         RecordingError: a file is damaged.
     """
     weighed = [Weighed(trial) for trial in tried(model, recordings, progress)]
-    untuned = told(weighed, SpottingOptions())
+    untuned = found_in_all(weighed, SpottingOptions())
     if not untuned.truths:
         raise NothingLabelledError
     choice = chosen(weighed, most_per_min)
-    outcomes = tuple(_outcome(each.options, told(weighed, each.options), untuned) for each in choice.offers)
+    outcomes = tuple(_outcome(each.options, found_in_all(weighed, each.options), untuned) for each in choice.offers)
     options = choice.best.options
     verified = found_by(model, recordings, progress, Segmentation(options=options))
     best = _outcome(options, verified, untuned)
-    agree = set(verified.detections) == set(told(weighed, options).detections)
+    agree = set(verified.detections) == set(found_in_all(weighed, options).detections)
     said = [*doubts(model, weighed, best.scores, most_per_min), *([] if agree else [OTHERWISE])]
     elsewhere = scores_of(held_out(weighed, most_per_min)) if len(weighed) > 1 else None
     return Tuned(outcomes, best, scores_of(untuned), elsewhere, tuple(said))

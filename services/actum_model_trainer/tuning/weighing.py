@@ -1,4 +1,4 @@
-"""What settings are worth on a recording: for each action, how often it was done, told, and told rightly."""
+"""What settings are worth on a recording: for each action, how often it was done, found, and found rightly."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -16,7 +16,7 @@ Scores = dict[str, ActionScore]
 
 @dataclass(frozen=True)
 class Wish:
-    """Settings with the same cooldown for every action: no action's cooldown changes what is told of another."""
+    """Settings with the same cooldown for every action: no action's cooldown changes the answers to another."""
 
     sensitivity: Sensitivity
     disabled: frozenset[str] = frozenset()
@@ -44,11 +44,11 @@ class Weighed:
             options = SpottingOptions(wish.sensitivity, wish.shortest_pause_s, cooldown_s, wish.disabled)
             found = self.trial.found(options)
             done = Counter(truth.label for truth in found.truths)
-            told = Counter(each.label for each in found.detections)
+            answered = Counter(each.label for each in found.detections)
             matches = matched(found.detections, found.truths, intersection_over_union)
             right = Counter(match.truth.label for match in matches)
             self.known[wish] = {
-                label: ActionScore(done[label], told[label], right[label]) for label in searched | done.keys()
+                label: ActionScore(done[label], answered[label], right[label]) for label in searched | done.keys()
             }
         return self.known[wish]
 
