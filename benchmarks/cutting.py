@@ -94,7 +94,7 @@ def cuts_of(skeletons: Iterable[Skeleton], number: int) -> list[Cuts | None]:
     tracks, first_ns = PersonTracks(), 0
     for skeleton in skeletons:
         first_ns = first_ns or skeleton.stamp_ns
-        tracks.take(skeleton)
+        tracks.receive(skeleton)
     courses = tracks.courses()
     return [cut(courses, asked, first_ns) for asked in (number, None)]
 

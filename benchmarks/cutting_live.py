@@ -64,7 +64,7 @@ def take_of(skeletons: Iterable[Skeleton], truths_ns: Spans, asked: int) -> Take
     counter, newest_ns, ended = RepetitionCounter(asked), 0, False
     for skeleton in skeletons:
         newest_ns = skeleton.stamp_ns
-        if counter.take(skeleton) and counter.finished:
+        if counter.receive(skeleton) and counter.finished:
             ended = True
             break
     cuts = counter.cuts()

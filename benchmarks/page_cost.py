@@ -144,7 +144,7 @@ def measured(statuses: Listening, received: Counter[int]) -> tuple[str, str, str
 def lost(statuses: Listening) -> Counter[str]:
     """Read what the pipeline's services have said up to now; return the frames that they lost on the way, by key."""
     newest: dict[str, Status] = {}
-    while (each := statuses.take()) is not None:
+    while (each := statuses.receive()) is not None:
         if isinstance(each.message, Status):
             newest[each.message.service] = each.message
     lost_frames: Counter[str] = Counter()

@@ -42,7 +42,7 @@ class Film:
         self.pictures: list[Image.Image] = []
         self.durations_ms: list[int] = []
 
-    def take(self, stands_ms: int) -> None:
+    def receive(self, stands_ms: int) -> None:
         """Add a picture."""
         seen = Image.open(BytesIO(self.page.screenshot())).convert("RGB")
         self.pictures.append(seen.resize(SIZE, Image.Resampling.LANCZOS))
@@ -52,7 +52,7 @@ class Film:
         """Add pictures until a text is seen."""
         awaited = self.page.get_by_text(text).locator("visible=true").first
         while not awaited.is_visible():
-            self.take(stands_ms)
+            self.receive(stands_ms)
             self.page.wait_for_timeout(every_ms)
 
     def save(self, file: Path) -> None:
@@ -92,7 +92,7 @@ def teach(film: Film) -> None:
     page.get_by_role("combobox", name="Person").fill("anna")
     for letters in range(len(ACTIONS[0]) + 1):
         action(page).fill(ACTIONS[0][:letters])
-        film.take(TYPED_MS)
+        film.receive(TYPED_MS)
     record(page)
     film.while_waiting(f"{TIMES} of {ACTIONS[0]} recorded", COUNTED_MS, 700)
     for label in ACTIONS[1:]:
@@ -109,7 +109,7 @@ def teach(film: Film) -> None:
     page.evaluate("() => scrollTo(0, document.querySelector('#examples').offsetTop - 70)")
     page.wait_for_timeout(1000)
     for _ in range(14):
-        film.take(PLAYED_MS)
+        film.receive(PLAYED_MS)
 
 
 def train(film: Film) -> None:
@@ -119,11 +119,11 @@ def train(film: Film) -> None:
     press(page, "Train")
     page.locator("#training .stage").wait_for()
     for _ in range(4):
-        film.take(2 * COUNTED_MS)
+        film.receive(2 * COUNTED_MS)
         page.wait_for_timeout(1500)
     press(page, "Use this model")
     page.get_by_role("row").filter(has_text="in use").wait_for()
-    film.take(HELD_MS)
+    film.receive(HELD_MS)
 
 
 def recognise(film: Film) -> None:
@@ -136,9 +136,9 @@ def recognise(film: Film) -> None:
     for label in ACTIONS[:2]:
         answered = page.get_by_role("button", name=f"{label} ").first
         while not answered.is_visible():
-            film.take(COUNTED_MS)
+            film.receive(COUNTED_MS)
             page.wait_for_timeout(300)
-        film.take(HELD_MS)
+        film.receive(HELD_MS)
 
 
 PERFORM = """async (fields) => {

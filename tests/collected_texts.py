@@ -37,7 +37,7 @@ class Collected:
     texts: defaultdict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
     unknown: dict[str, str] = field(default_factory=dict)
 
-    def take(self, node: ast.expr, place: str) -> bool:
+    def receive(self, node: ast.expr, place: str) -> bool:
         """Collect the texts that an expression can be; false where there are none."""
         found = list(SOURCES.texts(node))
         for text in found:
@@ -47,7 +47,7 @@ class Collected:
     def take_assigned(self, name: str) -> None:
         """Collect what the variables of a name are set to."""
         for value, place in SOURCES.assigned(name):
-            self.take(value, place)
+            self.receive(value, place)
 
 
 def reject_kinds() -> Collected:
@@ -57,7 +57,7 @@ def reject_kinds() -> Collected:
     for place, name, call in SOURCES.calls():
         for given in SOURCES.arguments(call, name, "kind") if name == "reject" or name.endswith("Error") else []:
             followed = "kind" in (getattr(given, "attr", ""), getattr(given, "id", ""))
-            if not found.take(given, place) and not followed:
+            if not found.receive(given, place) and not followed:
                 found.unknown[place] = ast.unparse(call)
     return found
 
@@ -70,8 +70,8 @@ def reasons() -> Collected:
     for place, name, call in SOURCES.calls():
         given = [each for wanted in REASONS for each in SOURCES.arguments(call, name, wanted)]
         for each in given + (call.args if name == LOST else []):
-            found.take(each, place)
+            found.receive(each, place)
     for (name, _), returned in SOURCES.returns.items():
         for each in returned if name.strip("_").startswith("why") else []:
-            found.take(each, name)
+            found.receive(each, name)
     return found

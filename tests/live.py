@@ -192,7 +192,7 @@ def collect(
     found: list = []
 
     def enough() -> bool:
-        while (received := listening.take()) is not None:
+        while (received := listening.receive()) is not None:
             if isinstance(received.message, kind):
                 found.append(received.message)
         return done(found)

@@ -45,6 +45,6 @@ def told(messages: Iterable[Message], prefix: str = "") -> Told:
 
 def mark(switch: Client, truths: Listening, prefix: str, over: threading.Event) -> None:
     while not over.wait(0.005):
-        while (received := truths.take()) is not None:
+        while (received := truths.receive()) is not None:
             if isinstance(received.message, Truth):
                 switch.put(with_mark(received.message, prefix)[0])

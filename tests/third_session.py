@@ -25,7 +25,7 @@ def passed_on(session: zenoh.Session, who: str) -> None:
 
 def received(listening: Listening) -> list[str]:
     taken = []
-    while (each := listening.take()) is not None:
+    while (each := listening.receive()) is not None:
         taken.append(each.key)
     return taken
 

@@ -84,7 +84,7 @@ class Run:
     def _step(self, client: Client, listening: Sequence[Listening], marking: bool) -> None:
         """Take what has come, put the marks that are due (those begun are ended), and start what has ended."""
         for stream in listening:
-            while (received := stream.take()) is not None:
+            while (received := stream.receive()) is not None:
                 if received.message is not None:
                     now_s = time.monotonic()
                     for line in self.heard.hear(received.message, now_s):

@@ -166,7 +166,7 @@ class OngoingLines:
         self._newest: dict[tuple[str, int], tuple[float, Action]] = {}
         self._lock = threading.Lock()
 
-    def take(self, message: Message | None) -> None:
+    def receive(self, message: Message | None) -> None:
         """Note a partial action, or the end of one."""
         if not isinstance(message, Action):
             return

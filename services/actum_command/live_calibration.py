@@ -72,7 +72,7 @@ def live_skeletons(client: Client, stop: threading.Event, tell: Tell) -> Iterato
     stream, received_s = client.listen(key), time.monotonic()
     tell(f"reading {key}; Ctrl-C ends")
     while not stop.wait(POLL_S):
-        while (received := stream.take()) is not None:
+        while (received := stream.receive()) is not None:
             received_s = time.monotonic()
             if isinstance(received.message, Skeleton):
                 yield received.message
@@ -116,7 +116,7 @@ class _ImageStream:
         Raises:
             SilentStreamError: no valid image has come for `SILENCE_S`.
         """
-        received = self._listening.take()
+        received = self._listening.receive()
         image = None if received is None else received.message
         if isinstance(image, Image) and image.valid:
             self._valid_s, self._invalid = time.monotonic(), None

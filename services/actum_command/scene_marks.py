@@ -42,7 +42,7 @@ def mark_truth(client: Client, stop: threading.Event) -> None:
     while not stop.is_set() and not client.wait_for_subscriber(keys.SEGMENT, SUBSCRIBER_POLL_S):
         pass
     while not stop.wait(POLL_S):
-        while (received := truths.take()) is not None:
+        while (received := truths.receive()) is not None:
             if isinstance(received.message, Truth):
                 client.put(mark_of(received.message))
 

@@ -23,8 +23,8 @@ ON_ITS_WAY_S = 0.3  # longest delay of a message that was put before the recordi
 class Storing(Protocol):
     """What stores messages: `actum_examples.stream_recorder`, or what stands before it."""
 
-    def take(self, message: Message, received_ns: int) -> None:
-        """Take one message and the time it was received at (ns)."""
+    def receive(self, message: Message, received_ns: int) -> None:
+        """Receive one message and the time it was received at (ns)."""
 
     def reject(self, error: DecodeError) -> None:
         """Take note of a payload that does not decode."""
@@ -46,11 +46,11 @@ def store_all(listening: Listening, recorder: Storing, stop: threading.Event, de
 
 def _store(listening: Listening, recorder: Storing) -> bool:
     """Store one message if one has come; tell whether one had."""
-    received = listening.take()
+    received = listening.receive()
     if received is None:
         return False
     if received.message is not None:
-        recorder.take(received.message, steady_clock.now_ns())
+        recorder.receive(received.message, steady_clock.now_ns())
     elif received.error is not None:
         recorder.reject(received.error)
     return True

@@ -36,10 +36,10 @@ class RepetitionRecorder:
             return self.counter.so_far is not None
         return len(self.cuts.repetitions) < self.counter.asked
 
-    def take(self, message: Message, received_ns: int) -> None:
-        """Take one message and the time it was received at (ns); report a higher count, and the end."""
-        self._stream.take(message, received_ns)
-        if not isinstance(message, Skeleton) or not self.counter.take(message):
+    def receive(self, message: Message, received_ns: int) -> None:
+        """Receive one message and the time it was received at (ns); report a higher count, and the end."""
+        self._stream.receive(message, received_ns)
+        if not isinstance(message, Skeleton) or not self.counter.receive(message):
             return
         if self.counter.count > self._reported:
             self._reported = self.counter.count
@@ -57,5 +57,5 @@ class RepetitionRecorder:
         if self.cuts is not None:
             for mark in cut_marks(self.cuts, self._label, self.counter.sensor):
                 assert mark.stamp_ns is not None
-                self._stream.take(mark, mark.stamp_ns)
+                self._stream.receive(mark, mark.stamp_ns)
         self._stream.close()

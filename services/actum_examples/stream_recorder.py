@@ -62,8 +62,8 @@ class StreamRecorder:
         self._marks = UnstampedMarks()
         self._frames_ns: tuple[int, int] | None = None
 
-    def take(self, message: Message, received_ns: int) -> None:
-        """Take one message and the time it was received at (ns)."""
+    def receive(self, message: Message, received_ns: int) -> None:
+        """Receive one message and the time it was received at (ns)."""
         if isinstance(message, Skeleton | Posture):
             self._newest_ns = message.stamp_ns
             first_ns, last_ns = self._frames_ns or (message.stamp_ns, message.stamp_ns)
@@ -99,7 +99,7 @@ class StreamRecorder:
                 self.counters.reject("mark_outside_frames", f"{mark.segment_id} at {mark.stamp_ns} ns, none of theirs")
                 return
             self._store(mark, received_ns)
-        self._place(self._marks.take(mark, received_ns, self._newest_ns))
+        self._place(self._marks.receive(mark, received_ns, self._newest_ns))
 
     def _place(self, marks: Iterable[Placed]) -> None:
         for mark, since_ns in marks:

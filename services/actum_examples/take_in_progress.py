@@ -71,7 +71,7 @@ class TakeInProgress:
         self._newest_ns = skeleton.stamp_ns
         self._frames += 1
         self.recorder.write(skeleton)
-        self._counter.take(skeleton)
+        self._counter.receive(skeleton)
         assert self._counter.first_ns is not None
         update = {
             "seconds": (self._newest_ns - self._counter.first_ns) / SECOND_NS,

@@ -68,7 +68,7 @@ class UnstampedMarks:
         self._answered: OrderedDict[tuple[str, str, str, int, int | None], Bounds] = OrderedDict()
         self._due_ns: float = float("inf")
 
-    def take(self, mark: Segment, now_ns: int, newest_ns: int | None = None) -> Iterator[Placed]:
+    def receive(self, mark: Segment, now_ns: int, newest_ns: int | None = None) -> Iterator[Placed]:
         """Take a mark, also one that has its stamp and is only noted; yield those that it shows to be of before."""
         late_for = self._lacking(mark, now_ns)
         if mark.stamp_ns is not None and late_for is not None:

@@ -65,20 +65,20 @@ class SegmentCollector:
         self._segmenter = Segmenter(self.counters)
 
     def handle(self, message: Message | Tick) -> list[Message]:
-        """Take a posture, a mark or a tick; put nothing."""
+        """Receive a posture, a mark or a tick; put nothing."""
         match message:
             case Posture():
                 frame, closed = self._segmenter.posture(message)
                 self.closed += closed
                 if frame is not None:
-                    self.take(message.agent, frame)
+                    self.receive(message.agent, frame)
             case Segment():
                 self.closed += self._segmenter.mark(message)
             case Tick():
                 self.closed += self._segmenter.tick(message)
         return []
 
-    def take(self, agent: int, frame: Frame) -> None:
+    def receive(self, agent: int, frame: Frame) -> None:
         """Take an agent's next frame."""
 
 
@@ -89,7 +89,7 @@ class FrameCollector(SegmentCollector):
         super().__init__()
         self.frames: dict[int, list[Frame]] = {}
 
-    def take(self, agent: int, frame: Frame) -> None:
+    def receive(self, agent: int, frame: Frame) -> None:
         """Keep an agent's next frame if it is valid."""
         if frame.valid:
             self.frames.setdefault(agent, []).append(frame)

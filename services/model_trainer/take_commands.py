@@ -58,8 +58,8 @@ class TakeCommands:
         """Return whether a take of that set is being recorded."""
         return self._take is not None and self._take.state.set == name
 
-    def take(self, message: Skeleton | Segment, counters: Counters) -> None:
-        """Take a frame or a mark; count a mark that is refused, and the take where it is lost by that."""
+    def receive(self, message: Skeleton | Segment, counters: Counters) -> None:
+        """Receive a frame or a mark; count a mark that is refused, and the take where it is lost by that."""
         take = self._take
         if take is None:
             return

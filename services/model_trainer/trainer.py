@@ -99,12 +99,12 @@ class ModelTrainer:
         return (own, *(refusing(command) for group in groups for command in group.commands))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Take a frame or a mark of the take that is recorded, or a tick; return what has changed, on ticks."""
+        """Receive a frame or a mark of the take that is recorded, or a tick; return what has changed, on ticks."""
         match message:
             case Skeleton() | Segment():
                 if isinstance(message, Skeleton):
                     self._newest_ns = message.stamp_ns
-                self._takes.take(message, self.counters)
+                self._takes.receive(message, self.counters)
                 return []
             case Tick():
                 return self._tick(message.monotonic_ns)

@@ -46,7 +46,7 @@ def _recorded(video: Path, recorder: Recorder, label: str, count: int | None, pr
     tracks, seen = PersonTracks(), list[Skeleton]()
     for skeleton in _skeletons(video, progress):
         recorder.write(skeleton)
-        tracks.take(skeleton)
+        tracks.receive(skeleton)
         seen += [skeleton] if skeleton.agents else []
     cuts = cut(tracks.courses(), count, 0)
     if cuts is not None:

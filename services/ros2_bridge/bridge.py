@@ -48,7 +48,7 @@ class Ros2Bridge:
             return self._converted(message)
         return []
 
-    def take(self, foreign: Foreign) -> Iterable[Message]:
+    def receive(self, foreign: Foreign) -> Iterable[Message]:
         """Turn a mark into a segment."""
         try:
             mark = segment_of(foreign.payload, self._settings.sensor)

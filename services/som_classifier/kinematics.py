@@ -47,7 +47,7 @@ class KinematicsFilter:
         self._before = self._speed = self._smooth = self._lagging = np.zeros((0, 3))
 
     def step(self, stamp_ns: int, joints: Array) -> Kinematics:
-        """Take the next frame's joints and return their kinematics.
+        """Receive the next frame's joints and return their kinematics.
 
         Args:
             stamp_ns: of the frame.

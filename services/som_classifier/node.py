@@ -93,7 +93,7 @@ class SomClassifier:
         self._segmenter.remember([answer for answer in answers if isinstance(answer, Action)])
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Take a posture, a mark or a tick; return the marks, partial and final actions that follow from it."""
+        """Receive a posture, a mark or a tick; return the marks, partial and final actions that follow from it."""
         if isinstance(message, Message):
             self._sensor = message.sensor
         match message:

@@ -57,7 +57,7 @@ class Segmenter:
             self._marked.append(OpenSegment(*known))
 
     def posture(self, posture: Posture) -> tuple[Frame | None, list[ClosedSegment]]:
-        """Take the next posture; return its frame, None if it is stale, and the segments it closes."""
+        """Receive the next posture; return its frame, None if it is stale, and the segments it closes."""
         closed = self._restart(posture.session_id)
         order, frame = self.streams.add(posture)
         stream = self.streams.of(posture.agent)

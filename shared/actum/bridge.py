@@ -61,6 +61,6 @@ class Bridge(Servable, Protocol):
         """Handle one message of ours or a tick, and return the payloads to put."""
         ...
 
-    def take(self, foreign: Foreign) -> Iterable[Message]:
+    def receive(self, foreign: Foreign) -> Iterable[Message]:
         """Take one payload of the other system, and return the messages to put."""
         ...

@@ -87,7 +87,7 @@ def _copy(
     copying = _Copying(writer, change, metadata)
     for record in source.records():
         try:
-            copying.take(record)
+            copying.receive(record)
         except KeyError as error:
             raise RecordingError(
                 source.path, f"the recording is damaged (a message belongs to the unknown channel {error})", REMEDY
@@ -116,7 +116,7 @@ class _Copying:
         self.kept = 0
         self.described = False
 
-    def take(self, record: McapRecord) -> None:
+    def receive(self, record: McapRecord) -> None:
         match record:
             case Header():
                 self._writer.start(record.profile)

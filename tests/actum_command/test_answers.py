@@ -21,7 +21,7 @@ class Stream:
     def __init__(self) -> None:
         self.coming: list[Message] = []
 
-    def take(self) -> Received | None:
+    def receive(self) -> Received | None:
         if not self.coming:
             return None
         message = self.coming.pop(0)

@@ -28,11 +28,11 @@ def streaming(monkeypatch: pytest.MonkeyPatch, messages: Iterable[Message]) -> t
     """Have these messages come from the sensor, each a second after the last, and then none."""
     coming, clock_s, stop = iter(messages), iter(range(1000)), threading.Event()
 
-    def take() -> SimpleNamespace | None:
+    def receive() -> SimpleNamespace | None:
         message = next(coming, None)
         return None if message is None else SimpleNamespace(message=message)
 
-    client = SimpleNamespace(sensor="kinect0", listen=lambda key, ring: SimpleNamespace(take=take))
+    client = SimpleNamespace(sensor="kinect0", listen=lambda key, ring: SimpleNamespace(receive=receive))
     monkeypatch.setattr(calibrate_commands, "connect", lambda: nullcontext(client))
     monkeypatch.setattr(calibrate_commands, "stop_on_signals", lambda: stop)
     monkeypatch.setattr(live_calibration, "POLL_S", 0)

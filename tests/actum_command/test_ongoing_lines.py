@@ -30,25 +30,25 @@ def going(completeness: float | None, agent: int = 1, name: str = "lift", segmen
 def test_the_newest_of_each_person_shows_how_far_it_is() -> None:
     lines = OngoingLines(Clock())
     for message in (going(0.2), skeleton(1), going(0.1, agent=2, name="[b]wave"), going(0.62), None):
-        lines.take(message)
+        lines.receive(message)
     assert shown(lines) == ["agent 1: lift 62 % ▆▆▆▁▁ 0.87", "agent 2: [b]wave 10 % ▁▁▁▁▁ 0.87"]
 
 
 def test_where_the_model_cannot_tell_how_far_it_is_nothing_is_said_of_it() -> None:
     lines = OngoingLines(Clock())
-    lines.take(going(None))
+    lines.receive(going(None))
     assert shown(lines) == ["agent 1: lift 0.87"]
 
 
 def test_a_line_goes_with_the_answer_and_when_nothing_more_is_heard() -> None:
     clock = Clock()
     lines = OngoingLines(clock)
-    lines.take(going(0.9))
-    lines.take(action(1, 2, "another"))
+    lines.receive(going(0.9))
+    lines.receive(action(1, 2, "another"))
     assert shown(lines)
-    lines.take(action(1, 2, "auto-1"))
+    lines.receive(action(1, 2, "auto-1"))
     assert not shown(lines)
-    lines.take(going(0.9))
+    lines.receive(going(0.9))
     clock.now_s += STALE_S
     assert not shown(lines)
 

@@ -59,7 +59,7 @@ class Live:
     def put(self, message: Message) -> None:
         self.heard.append(message)
 
-    def take(self) -> Received | None:
+    def receive(self) -> Received | None:
         if self._coming:
             return self._coming.pop(0)
         self._stop.set()
@@ -167,7 +167,7 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
     assert "a.mcap.part is an unfinished recording (0.0 MB, last written 2" in told
     assert f"actum record {path} --finish" in told
     assert (tmp_path / "a.mcap.part").read_bytes() == left
-    assert live.take() is not None, "nobody has listened"
+    assert live.receive() is not None, "nobody has listened"
     assert f"1 messages, up to where it breaks off, written to {path}" in invoke("record", path, "--finish").stdout
     assert [message.stamp_ns for message in Recording(path).messages()] == [1]
     assert f"{path} already exists" in refused("record", path)
@@ -239,7 +239,7 @@ def test_where_nothing_can_be_written_nothing_is_recorded(named: str, told: str,
     (tmp_path / "file").touch()
     live.comes(skeleton(1))
     assert told in refused("record", tmp_path / named)
-    assert live.take() is not None, "nobody has listened"
+    assert live.receive() is not None, "nobody has listened"
     assert {path.name for path in tmp_path.iterdir()} == {"takes", "file"}
 
 

@@ -18,13 +18,13 @@ def test_a_mark_without_a_stamp_gets_that_of_the_newest_frame() -> None:
     shown: list[Message] = []
     showing = Showing(shown.append)
     for message in (skeleton(5, STANDING), mark("start"), skeleton(9, STANDING), mark("end"), mark("end", 7)):
-        showing.take(message)
+        showing.receive(message)
     assert [message.stamp_ns for message in shown] == [5, 5, 9, 9, 7]
 
 
 def test_a_mark_before_any_frame_and_what_does_not_decode_are_counted() -> None:
     showing = Showing(lambda _: None)
-    showing.take(mark("start"))
+    showing.receive(mark("start"))
     showing.reject(DecodeError("not_msgpack", "x"))
     assert (showing.shown, dict(showing.not_shown)) == (0, {"mark_without_stamp": 1, "not_msgpack": 1})
 

@@ -32,7 +32,7 @@ def counted_along(messages: Iterator[Skeleton | Truth], asked: int) -> tuple[Rep
     for message in messages:
         if isinstance(message, Truth):
             marks_ns.append(message.stamp_ns)
-        elif counter.take(message) and counter.finished:
+        elif counter.receive(message) and counter.finished:
             break
     return counter, [(start + end) // 2 for start, end in zip(marks_ns[::2], marks_ns[1::2], strict=False)]
 
@@ -56,7 +56,7 @@ def test_where_the_simulated_person_only_stands_nothing_is_counted_and_that_is_e
 def test_five_of_five_are_not_doubted_though_another_number_might_explain_them() -> None:
     counter = RepetitionCounter(5)
     for each in five_waves().then(rest(4)).skeletons(noise_m=0.015):
-        counter.take(each)
+        counter.receive(each)
     cuts = counter.cuts()
     assert cuts is not None and len(cuts.repetitions) == 5
     assert [doubt for doubt in cuts.doubted if doubt.repetition is None] == []
@@ -66,5 +66,5 @@ def test_five_of_five_are_not_doubted_though_another_number_might_explain_them()
 def test_stillness_is_no_repetition_however_noisy_the_sensor(noise_m: float) -> None:
     counter = RepetitionCounter(3)
     for each in Stream().then(rest(20)).skeletons(noise_m):
-        counter.take(each)
+        counter.receive(each)
     assert counter.cuts() is None

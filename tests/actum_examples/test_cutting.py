@@ -38,7 +38,7 @@ LEFT_RIGHT = [0, 1, 2, 6, 7, 8, 3, 4, 5, 12, 13, 14, 9, 10, 11]
 def seen(skeletons: Sequence[Skeleton]) -> list[Course]:
     tracks = PersonTracks()
     for each in skeletons:
-        tracks.take(each)
+        tracks.receive(each)
     return tracks.courses()
 
 

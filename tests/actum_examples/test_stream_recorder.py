@@ -31,7 +31,7 @@ class Take:
         with Recorder(self.path, person="1", source="live") as recorder:
             stream = StreamRecorder(recorder, **options)  # type: ignore[arg-type]
             for i, message in enumerate(messages):
-                stream.take(message, received_ns=i * apart_ns)
+                stream.receive(message, received_ns=i * apart_ns)
             stream.close()
             self.counters = stream.counters
         return list(Recording(self.path).messages())
@@ -145,16 +145,16 @@ def test_a_mark_that_nothing_answers_is_stored_before_the_end_so_that_a_crash_do
     with Recorder(tmp_path / "a.mcap", person="1", source="live") as recorder:
         stream = StreamRecorder(recorder)
         for message, received_ns in ((skeleton(10), 0), (mark("start"), 1), (skeleton(20), SETTLE_NS + 2)):
-            stream.take(message, received_ns)
+            stream.receive(message, received_ns)
         assert stream.stored == 3
 
 
 def test_the_time_of_receipt_is_kept(tmp_path: Path) -> None:
     with Recorder(tmp_path / "a.mcap", person="1", source="live") as recorder:
         stream = StreamRecorder(recorder)
-        stream.take(skeleton(10), received_ns=500)
-        stream.take(mark("start"), received_ns=600)
-        stream.take(action(10, 20), received_ns=700)
+        stream.receive(skeleton(10), received_ns=500)
+        stream.receive(mark("start"), received_ns=600)
+        stream.receive(action(10, 20), received_ns=700)
         stream.close()
     with (tmp_path / "a.mcap").open("rb") as file:
         times = {(m.publish_time, m.log_time) for _, _, m in make_reader(file).iter_messages()}
@@ -168,7 +168,7 @@ def test_marks_of_others_are_left_out_and_counted(tmp_path: Path) -> None:
     with Recorder(tmp_path / "a.mcap", person="1", source="live") as recorder:
         stream = StreamRecorder(recorder, label="push")
         for message in (*of_the_scene, *own, *of_a_program, mark("start", 7, "played", origin=REPLAY)):
-            stream.take(message, received_ns=0)
+            stream.receive(message, received_ns=0)
     stored = [m for m in Recording(tmp_path / "a.mcap").messages() if isinstance(m, Segment)]
     assert [(m.segment_id, m.label) for m in stored if m.kind == "start"] == [("mine", "push"), ("robot", "push")]
     assert len(stored) == 4

@@ -30,7 +30,7 @@ def test_each_mark_gets_the_stamp_of_its_own_segment(
                 continue
             comes = mark(what, bounds[what] if stamped[what] else None, label=str(number))
             expected += [] if stamped[what] else [(str(number), what, bounds[what])]
-            placed += marks.take(comes, number)
+            placed += marks.receive(comes, number)
     placed += marks.close()
     found = [(each.label, each.kind, each.stamp_ns) for each, _ in placed]
     assert sorted(found) == sorted(expected)

@@ -161,7 +161,7 @@ def _bridge(_: Path) -> Target:
         _everything,
         node.handle,
         node.counters,
-        foreign=lambda p: node.take(Foreign("mark", p)),
+        foreign=lambda p: node.receive(Foreign("mark", p)),
         sample=FOREIGN_MARK,
     )
 

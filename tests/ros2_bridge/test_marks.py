@@ -22,7 +22,7 @@ BRIDGE = Ros2Bridge(Settings(sensor="lab"))
 
 
 def segments(payload: bytes) -> list[Any]:
-    return list(BRIDGE.take(Foreign("mark", payload)))
+    return list(BRIDGE.receive(Foreign("mark", payload)))
 
 
 def refusal(payload: bytes) -> str:

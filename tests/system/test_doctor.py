@@ -68,7 +68,7 @@ def test_a_recording_that_is_played_too_slowly(running: System, tmp_path: Path) 
         running.wait_for_services(client, "pose_preprocessor")
         skeletons = client.listen(keys.pattern(keys.SKELETON, client.sensor))
         running.start("actum_command", "play", str(tmp_path / "reaches.mcap"), "--speed", "0.1")
-        wait_until(lambda: skeletons.take() is not None, "it is played")
+        wait_until(lambda: skeletons.receive() is not None, "it is played")
         found = said(running)
         assert "3 skeletons arrive per second, but their time stamps show that the sensor captured 30" in found, found
 

@@ -45,7 +45,7 @@ def longest_way_s(writer: Client, reader: Client) -> float:
         writer.put(picture(put))
         put_s, put = time.monotonic(), put + 1
         writer.put(Segment(sensor="kinect0", kind="start", segment_id=str(put), stamp_ns=put))
-        wait_until(lambda: marks.take() is not None, "the mark has come")
+        wait_until(lambda: marks.receive() is not None, "the mark has come")
         longest_s = max(longest_s, time.monotonic() - put_s)
         threading.Event().wait(1 / 15)
     return longest_s

@@ -53,7 +53,7 @@ def assert_answered_once(client: Client) -> None:
         client.put(frame)
     found = collect(postures, Posture, lambda found: len({posture.stamp_ns for posture in found}) == len(frames))
     statuses = client.listen(keys.pattern(keys.STATUS, client.sensor))
-    wait_until(lambda: statuses.take() is not None, "a second goes by")
+    wait_until(lambda: statuses.receive() is not None, "a second goes by")
     found += collect(postures, Posture, lambda _: True)
     assert [posture.stamp_ns for posture in found] == [frame.stamp_ns for frame in frames]
 

@@ -123,7 +123,7 @@ def test_who_takes_over_does_not_answer_again_what_was_just_answered(running: Sy
         running.wait_for_services(client, "action_fusion")
         there_s = time.monotonic()
         wait_until(lambda: time.monotonic() > there_s + HISTORY_S + 0.5, "whatever it was told again is answered")
-        assert events.take() is None
+        assert events.receive() is None
 
 
 def test_late_subscribers_get_the_events_of_a_fusion_that_was_killed(running: System, state: tuple[str, str]) -> None:
@@ -182,7 +182,7 @@ def test_an_event_written_down_and_not_put_reaches_those_who_wait_for_it(
             shutil.copytree(state[1], tmp_path / "copy")
         with running.client() as unheard:
             waiting = unheard.listen_back(keys.pattern(keys.EVENT, client.sensor), LONG_S)
-            assert waiting.take() is None
+            assert waiting.receive() is None
             running.start("action_fusion", "--state", str(tmp_path / "copy"))
             (event,) = collect(waiting, Event, bool)
     assert event.segment_id == "s1"

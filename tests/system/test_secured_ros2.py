@@ -102,7 +102,7 @@ def until_marked(robot: Robot, segments: Listening) -> None:
 
     def one_comes() -> bool:
         robot.session.put(MARK, text('{"kind": "start", "segment_id": "right"}'))
-        while (taken := segments.take()) is not None:
+        while (taken := segments.receive()) is not None:
             assert isinstance(taken.message, Segment)
             came.append(taken.message)
         return bool(came)

@@ -81,7 +81,7 @@ def test_the_events_are_the_same_and_whoever_may_sees_them(
             assert as_told(found) == told_without_security
             assert all(event.valid and event.object for event in found)
             wait_until(lambda: len(watch.said().splitlines()) == ACTIONS, "a viewer's program printed every event")
-            assert images.take() is None
+            assert images.receive() is None
             assert {info.service for info in viewer.infos()} >= {*EXPECTED, "model_trainer", "web_dashboard"}
             collect(statuses, Status, lambda found: any(status.state.startswith("source ended") for status in found))
         doctor = running.actum("viewer", "compute", "doctor")
@@ -99,7 +99,7 @@ def test_marks_by_hand_are_answered_and_there_is_one_of_each_service(scene_model
             wait_for_all_but_marks(viewer)
             mark(running, "start")
             skeletons = viewer.listen(keys.pattern(keys.SKELETON, viewer.sensor))
-            wait_until(lambda: skeletons.take() is not None, "frames come")
+            wait_until(lambda: skeletons.receive() is not None, "frames come")
             collect_frames(skeletons, 60)
             mark(running, "end")
             [event] = collect(events, Event, bool, SCENE_S)
@@ -122,7 +122,7 @@ def collect_frames(listening: Listening, count: int) -> None:
 
     def enough() -> bool:
         nonlocal taken
-        while listening.take() is not None:
+        while listening.receive() is not None:
             taken += 1
         return taken >= count
 

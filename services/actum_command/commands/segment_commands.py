@@ -171,6 +171,6 @@ class Answers:
 
 
 def _messages(listening: Listening) -> Iterator[Message]:
-    while (received := listening.take()) is not None:
+    while (received := listening.receive()) is not None:
         if received.message is not None:
             yield received.message

@@ -38,7 +38,7 @@ class Showing:
         self._show = show
         self._newest_ns: int | None = None
 
-    def take(self, message: Message, _received_ns: int = 0) -> None:
+    def receive(self, message: Message, _received_ns: int = 0) -> None:
         """Show one message."""
         if isinstance(message, Skeleton | Posture):
             self._newest_ns = message.stamp_ns
@@ -86,7 +86,7 @@ class RecordedStreams:
         for message in self._recording.messages():
             if stop.is_set() or (self._pace is not None and not self._pace.wait(message.stamp_ns, stop)):
                 return
-            showing.take(message)
+            showing.receive(message)
 
 
 @contextmanager

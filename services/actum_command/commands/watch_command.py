@@ -107,7 +107,7 @@ def _remark(text: str) -> None:
 def _show_above_what_goes_on(client: Client, wanted: list[keys.Topic]) -> None:
     """Print a line for each wanted message but the partial actions; of these show the newest of each person below."""
     ongoing = OngoingLines()
-    client.follow(keys.pattern(keys.ACTION, client.sensor), lambda received: ongoing.take(received.message))
+    client.follow(keys.pattern(keys.ACTION, client.sensor), lambda received: ongoing.receive(received.message))
     with Live(ongoing, console=console, transient=True):
         for received in _received_on(client, wanted):
             if not isinstance(received.message, Action) or received.message.final:

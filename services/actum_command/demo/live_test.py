@@ -52,8 +52,8 @@ class Witness(Protocol):
         """Whether everything that has to come has come."""
         ...
 
-    def take(self, message: Message) -> list[str]:
-        """Take a message; return lines of console markup that say what has happened."""
+    def receive(self, message: Message) -> list[str]:
+        """Receive a message; return lines of console markup that say what has happened."""
         ...
 
 
@@ -125,13 +125,13 @@ class LiveTest:
         deadline_s = time.monotonic() + witness.longest_s + READY_S
         while not witness.satisfied and time.monotonic() < deadline_s:
             self._end_if_stopped()
-            received = listening.take()
+            received = listening.receive()
             if received is None:
                 time.sleep(POLL_S)
                 for ended in supervisor.restart_ended():
                     self._tell(f"[yellow]{escape(ended)}[/yellow]")
             elif received.message is not None:
-                for line in witness.take(received.message):
+                for line in witness.receive(received.message):
                     self._tell(line)
 
     def _end_if_stopped(self) -> None:

@@ -145,8 +145,8 @@ class MarkedWitness:
         """Seconds that the actions may take which have no event yet."""
         return (self.until - len(self.score.events)) * LONGEST_SAMPLE_S
 
-    def take(self, message: Message) -> list[str]:
-        """Take a message; return a line for an event."""
+    def receive(self, message: Message) -> list[str]:
+        """Receive a message; return a line for an event."""
         if isinstance(message, Truth):
             self.score.truths[message.segment_id] = message
         elif isinstance(message, Event):

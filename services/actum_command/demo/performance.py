@@ -50,8 +50,8 @@ class Performance:
     def __post_init__(self) -> None:
         self._presence = Presence(self.person)
 
-    def take(self, message: Message) -> Detection | None:
-        """Take a message; return what is told by it, if it is a valid event."""
+    def receive(self, message: Message) -> Detection | None:
+        """Receive a message; return what is told by it, if it is a valid event."""
         match message:
             case Skeleton():
                 self._see(message)

@@ -97,9 +97,9 @@ class PersonWitness:
         """Whether the scene is over, and all of its events have come."""
         return self.performance.over
 
-    def take(self, message: Message) -> list[str]:
-        """Take a message; return a line for an event, and one for each action that is not found."""
-        told = self.performance.take(message)
+    def receive(self, message: Message) -> list[str]:
+        """Receive a message; return a line for an event, and one for each action that is not found."""
+        told = self.performance.receive(message)
         return [*self._not_found(), *([] if told is None else [self._line(told)])]
 
     def _line(self, told: Detection) -> str:

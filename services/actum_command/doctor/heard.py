@@ -40,8 +40,8 @@ class Watched:
     stamps_ns: list[int] = field(default_factory=list)
     contents: list[bytes | None] = field(default_factory=list)
 
-    def take(self, message: Message, arrival_ns: int) -> None:
-        """Take one message."""
+    def receive(self, message: Message, arrival_ns: int) -> None:
+        """Receive one message."""
         self.arrivals_ns.append(arrival_ns)
         self.stamps_ns.append(message.stamp_ns or 0)
         self.contents.append(_content(message))
@@ -120,11 +120,11 @@ def _listened(client: Client, topics: list[Topic]) -> tuple[dict[str, list[Statu
     deadline_s = time.monotonic() + STATUS_S
     while time.monotonic() < deadline_s:
         for each in listening:
-            while (received := each.take()) is not None:
+            while (received := each.receive()) is not None:
                 if isinstance(received.message, Status):
                     statuses[received.message.service].append(received.message)
                 elif received.message is not None:
-                    streams[keys.address_of(received.message).topic].take(received.message, time.monotonic_ns())
+                    streams[keys.address_of(received.message).topic].receive(received.message, time.monotonic_ns())
         time.sleep(POLL_S)
     return dict(statuses), streams
 

@@ -45,7 +45,7 @@ class EventRecorder:
                 case Segment():
                     if message.stamp_ns is not None:
                         self._write(message)
-                    self._place(self._marks.take(message, self._now_ns))
+                    self._place(self._marks.receive(message, self._now_ns))
                 case Action(final=True):
                     self._write(message)
                     self._place(self._marks.answer(message, self._now_ns))

@@ -59,7 +59,7 @@ class Client:
         heads = [MESSAGE.pack(1, number, time_ns) for number in numbers]
         self.mailbox.put(Envelope("messages", head + payload, queued=True) for head in heads)
 
-    def take(self, text: str) -> bool:
+    def receive(self, text: str) -> bool:
         """Subscribe or unsubscribe as a request says; tell whether it was for a subscription.
 
         Raises:
@@ -148,7 +148,7 @@ class FoxgloveServer:
         """Take requests until the client goes, or says what is none."""
         while (received := await socket.receive())["type"] == "websocket.receive":
             try:
-                if client.take(received.get("text") or ""):
+                if client.receive(received.get("text") or ""):
                     self._subscribed.set()
             except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
                 await socket.close(UNUSABLE)

@@ -54,12 +54,12 @@ class RepetitionCounter:
         self._tracks = PersonTracks()
         self._next_count_ns = 0
 
-    def take(self, skeleton: Skeleton) -> bool:
-        """Take the next frame; return whether the repetitions were counted anew."""
+    def receive(self, skeleton: Skeleton) -> bool:
+        """Receive the next frame; return whether the repetitions were counted anew."""
         if self.first_ns is None or skeleton.stamp_ns < self.first_ns:
             self.first_ns = self._next_count_ns = skeleton.stamp_ns
         self.sensor = skeleton.sensor
-        self._tracks.take(skeleton)
+        self._tracks.receive(skeleton)
         if skeleton.stamp_ns < self._next_count_ns:
             return False
         so_far_ns = skeleton.stamp_ns - self.first_ns

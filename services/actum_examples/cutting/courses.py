@@ -80,8 +80,8 @@ class PersonTracks:
         self._filters: dict[int, KinematicsFilter] = {}
         self._instants: dict[int, list[_Instant]] = {}
 
-    def take(self, skeleton: Skeleton) -> None:
-        """Take the next frame of one sensor."""
+    def receive(self, skeleton: Skeleton) -> None:
+        """Receive the next frame of one sensor."""
         for posture in self._preprocessor.handle(skeleton):
             if not isinstance(posture, Posture) or not posture.agent:
                 continue
@@ -111,7 +111,7 @@ def recorded_courses(recording: Recording, sensor: str) -> list[Course]:
     tracks = PersonTracks()
     for message in recording.messages((keys.SKELETON,)):
         if isinstance(message, Skeleton) and message.sensor == sensor:
-            tracks.take(message)
+            tracks.receive(message)
     return tracks.courses()
 
 

@@ -43,7 +43,7 @@ class Watcher:
         self._newest_ns = 0
 
     def handle(self, message: Message | Tick) -> list[Message]:
-        """Take a posture, a mark or a tick; put nothing."""
+        """Receive a posture, a mark or a tick; put nothing."""
         self.marked.handle(message)
         if isinstance(message, Posture):
             self._newest_ns = message.stamp_ns

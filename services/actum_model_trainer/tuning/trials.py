@@ -87,7 +87,7 @@ class _Searches:
         self._found: list[tuple[list[Detection], SpottedSegment]] = []
 
     def handle(self, message: Message | Tick) -> list[Message]:
-        """Take a posture or a tick; put nothing."""
+        """Receive a posture or a tick; put nothing."""
         if isinstance(message, Posture):
             frame, _ = self._segmenter.posture(message)
             stream = self._segmenter.streams.of(message.agent)

@@ -103,7 +103,7 @@ class PyramidSpotter(Spotter):
         self._threshold = self._learned.metadata.threshold_for(options.false_alarms_per_min)
 
     def step(self, frame: Frame) -> Spotted:
-        """Take the next frame, valid or not; return what it shows."""
+        """Receive the next frame, valid or not; return what it shows."""
         if frame.valid and not self._recent.add(frame):
             self._decoder.forget()
             self._ongoing, self._next_decision_ns = None, frame.stamp_ns

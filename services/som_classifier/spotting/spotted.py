@@ -115,7 +115,7 @@ class Spotter(ABC):
 
     @abstractmethod
     def step(self, frame: Frame) -> Spotted:
-        """Take the next frame, valid or not, with the activity that the model's encoder gave it if it is valid."""
+        """Receive the next frame, valid or not, with the activity that the model's encoder gave it if it is valid."""
 
     def use(self, options: SpottingOptions) -> None:  # noqa: B027 - a search may have nothing that options change
         """Go on by other options, with all that was seen so far."""

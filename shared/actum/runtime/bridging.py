@@ -64,7 +64,7 @@ class BridgeService(StepService):
         """Hand on what comes on a foreign topic until the subscriber is undeclared."""
         for sample in subscriber:
             with self._ending_at_a_bug(f"while handling a message on {topic.key}", stop), self._lock:
-                for message in self._bridge.take(Foreign(topic.name, sample.payload.to_bytes())):
+                for message in self._bridge.receive(Foreign(topic.name, sample.payload.to_bytes())):
                     outbox.put(message)
 
 

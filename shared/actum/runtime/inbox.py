@@ -152,7 +152,7 @@ class Listening:
         """Return the subscription's samples, not decoded, until it is closed."""
         return self._subscriber
 
-    def take(self) -> Received | None:
+    def receive(self) -> Received | None:
         """Return the next sample if there is one."""
         sample = self._subscriber.try_recv()
         return None if sample is None else received(sample)

@@ -82,7 +82,7 @@ class Place:
         self._tokens: dict[str, zenoh.LivelinessToken] = {}
         self._last_held_s = -math.inf
 
-    def take(self, stop: threading.Event, settling_s: float) -> bool:
+    def claim(self, stop: threading.Event, settling_s: float) -> bool:
         """Become the running instance as soon as there is no other; False if stopped before.
 
         Raises:

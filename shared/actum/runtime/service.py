@@ -49,7 +49,7 @@ class Service(ABC):
             PlaceTakenError: another instance runs and stays.
         """
         place = Place(session, self._settings, self.name)
-        if not place.take(stop, settling_s):
+        if not place.claim(stop, settling_s):
             return
         queryables = self._queryables(session, stop)
         told = (session, place, stop, self._healthy, self._store)

@@ -71,7 +71,9 @@ def heard(*segments: tuple[float, float, str, int | None], done: list = DONE) ->
         messages.append((end_s, truth("end", end_s, str(number), action, object_id)))
     messages += [(segment[1] + 0.25, message) for segment in segments for message in told(*segment)]
     in_order = [message for _, message in sorted(messages, key=lambda each: each[0])]
-    return [line for message in [*in_order, status(State.SOURCE_ENDED)] for line in witness.take(message)], performance
+    return [
+        line for message in [*in_order, status(State.SOURCE_ENDED)] for line in witness.receive(message)
+    ], performance
 
 
 def plain(line: str) -> str:
@@ -133,14 +135,14 @@ def test_the_table_counts_every_action_that_was_done() -> None:
 def test_a_scene_is_over_once_its_source_has_ended_and_each_final_action_is_an_event() -> None:
     performance = Performance("person 1", actions=1)
     final, event = told(2.0, 4.0, "push", 1)
-    performance.take(status(State.SOURCE_ENDED))
-    performance.take(truth("start", 2.0, "0", "push", 1))
-    performance.take(truth("end", 4.0, "0", "push", 1))
+    performance.receive(status(State.SOURCE_ENDED))
+    performance.receive(truth("start", 2.0, "0", "push", 1))
+    performance.receive(truth("end", 4.0, "0", "push", 1))
     assert not performance.over, "it was the scene before that had ended"
-    performance.take(final)
-    performance.take(status(State.SOURCE_ENDED))
+    performance.receive(final)
+    performance.receive(status(State.SOURCE_ENDED))
     assert not performance.over, "the event has not come"
-    performance.take(event)
+    performance.receive(event)
     assert performance.over
 
 
@@ -148,6 +150,6 @@ def test_a_scene_is_over_once_its_source_has_ended_and_each_final_action_is_an_e
 def test_background_is_when_somebody_is_seen_and_does_none_of_the_actions(away_s: float, seen_s: float) -> None:
     performance = Performance("person 1", actions=0)
     for second in range(200):
-        performance.take(skeleton(second * FRAME_S, seen=not 10 < second * FRAME_S < 10 + away_s))
+        performance.receive(skeleton(second * FRAME_S, seen=not 10 < second * FRAME_S < 10 + away_s))
     seen_ns = sum(stretch.end_ns - stretch.start_ns for stretch in performance.found.seen)
     assert seen_ns / SECOND_NS == pytest.approx(seen_s, abs=0.3)

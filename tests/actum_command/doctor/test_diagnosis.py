@@ -56,7 +56,7 @@ class Listened:
     def __init__(self, messages: list[Message]) -> None:
         self._messages = messages
 
-    def take(self) -> Received | None:
+    def receive(self) -> Received | None:
         return Received("", self._messages.pop(0), None, 0) if self._messages else None
 
 

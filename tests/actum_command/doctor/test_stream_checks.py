@@ -49,7 +49,7 @@ def info(service: str, stamp_ns: int = 1, host: str = "lab", rate_hz: float | No
 def watched(messages: Sequence[Message], apart_s: float = 1 / 30) -> Watched:
     stream = Watched()
     for number, message in enumerate(messages):
-        stream.take(message, round(number * apart_s * SECOND_NS))
+        stream.receive(message, round(number * apart_s * SECOND_NS))
     return stream
 
 
