@@ -11,15 +11,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Skeleton, segment_marks
-from actum.skeletons import to_actum
+from actum.messages import Skeleton, segment_marks
 from actum_dataset_importer.importing import ImportReport, Progress, import_takes
 from actum_dataset_importer.msr_action3d import CLASSES, FRAMES_PER_SECOND, SOURCE_JOINTS
 from actum_dataset_importer.takes import (
     DatasetError,
     Take,
-    camera_joints,
     files_of,
+    frame_of_person,
     frame_without_person,
     read_rows,
     stamp_of,
@@ -71,6 +70,5 @@ def positions_m(screen: Array) -> Array:
 def _skeleton(stamp_ns: int, rows: Array, name: str) -> Skeleton:
     if not rows.any():
         return frame_without_person(stamp_ns, SENSOR, name)
-    listed: list[list[float]] = to_actum(np.column_stack([positions_m(rows), rows[:, 3]]).tolist(), "msr-action3d-20")
-    agent = Agent(agent=1, joints=camera_joints([j[:3] for j in listed]), confidence=[j[3] for j in listed])
-    return Skeleton(stamp_ns=stamp_ns, sensor=SENSOR, agents=[agent], session_id=name)
+    joints_m = np.column_stack([positions_m(rows), rows[:, 3]])
+    return frame_of_person(stamp_ns, joints_m, SENSOR, name, "msr-action3d-20")

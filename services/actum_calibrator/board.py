@@ -15,7 +15,7 @@ LARGEST_SQUARE_M = 1.0  # a larger number is in mm by mistake
 
 
 class PatternError(ValueError):
-    """An impossible marker or board; the message tells what is wrong and what is possible."""
+    """An impossible marker or board; the message names the problem and what is possible."""
 
 
 def families() -> list[str]:
@@ -48,7 +48,7 @@ def dictionary_of(family: str) -> Any:
 
 
 def black_cells(family: str, marker_id: int) -> Mask:
-    """Tell which cells (n, n) of a marker are black, its black border included, row by row from its top left.
+    """Return which cells (n, n) of a marker are black, its black border included, row by row from its top left.
 
     Raises:
         PatternError: the family has no such id.

@@ -27,21 +27,17 @@ def board_sheet(board: Board, sheet_size: SheetSize) -> bytes:
     left, top = (width - board_width) / 2, height - (height - STRIP_MM - board_height + EDGE_MM) / 2
 
     def draw(sheet: Sheet) -> None:
-        _draw_board(sheet, board, left, top)
+        square, margin = board.square_m * 1000, board.margin_m * 1000
+        rows, columns = np.indices((board.rows, board.columns))
+        sheet.cells((rows + columns) % 2 == 0, left, top, square)
+        white = [(row, column) for row in range(board.rows) for column in range(board.columns) if (row + column) % 2]
+        for marker_id, (row, column) in enumerate(white):
+            black = black_cells(board.family, marker_id)
+            x, y = left + column * square + margin, top - row * square - margin
+            sheet.cells(black, x, y, (square - 2 * margin) / len(black))
         _draw_foot(sheet, board, left)
 
     return document((width, height), f"actum calibration board, {board}", [draw])
-
-
-def _draw_board(sheet: Sheet, board: Board, left: float, top: float) -> None:
-    square, margin = board.square_m * 1000, board.margin_m * 1000
-    rows, columns = np.indices((board.rows, board.columns))
-    sheet.cells((rows + columns) % 2 == 0, left, top, square)
-    white = [(row, column) for row in range(board.rows) for column in range(board.columns) if (row + column) % 2]
-    for marker_id, (row, column) in enumerate(white):
-        black = black_cells(board.family, marker_id)
-        x, y = left + column * square + margin, top - row * square - margin
-        sheet.cells(black, x, y, (square - 2 * margin) / len(black))
 
 
 def _draw_foot(sheet: Sheet, board: Board, left: float) -> None:

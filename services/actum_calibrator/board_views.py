@@ -95,7 +95,7 @@ class BoardFinder:
 
 
 def _unfound(pixels: Pixels, name: str, corners: int) -> UnusablePictureError:
-    """Return the error that tells why the board was not found."""
+    """Return the error with the reason why the board was not found."""
     blur = image_blur_px(pixels)
     if blur is None:
         return UnusablePictureError(name, "the picture is too dark, too bright or empty")

@@ -88,19 +88,16 @@ class BundleAdjuster:
                 damping *= 10
             if np.abs(step).max() < SMALLEST_STEP or damping > MOST_DAMPING:
                 break
-        return self._outcome(parameters)
+        final, _gradient = self._normal_equations(parameters)
+        errors_px = self._errors(parameters)
+        freedom = max(1, sum(map(len, errors_px)) - len(parameters))
+        variance = sum(self._weight(errors) * errors.dot(errors) for errors in errors_px) / freedom
+        covariance = np.linalg.inv(final)[:6, :6] * variance
+        return BundleAdjustment(parameters[:6], [rms_px(errors) for errors in errors_px], covariance)
 
     def rms_px(self, people_from_markers: Array, markers_from_board: Array, pair: Pair) -> float:
         """Return the RMS reprojection error of a pair in both images, at poses (6) of the transform and the board."""
         return rms_px(self._linearised(people_from_markers, markers_from_board, pair)[0])
-
-    def _outcome(self, parameters: Array) -> BundleAdjustment:
-        normal, _ = self._normal_equations(parameters)
-        errors_px = self._errors(parameters)
-        freedom = max(1, sum(map(len, errors_px)) - len(parameters))
-        variance = sum(self._weight(errors) * errors.dot(errors) for errors in errors_px) / freedom
-        covariance = np.linalg.inv(normal)[:6, :6] * variance
-        return BundleAdjustment(parameters[:6], [rms_px(errors) for errors in errors_px], covariance)
 
     def _weight(self, errors: Array) -> float:
         return 1 / (1 + _mean_square(errors) / self._scale_px**2)

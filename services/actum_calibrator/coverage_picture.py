@@ -79,21 +79,17 @@ def coverage_picture(intrinsics: Intrinsics, views: Sequence[View]) -> bytes:
         14,
         FAINT,
     )
-    _draw_cells(drawing, intrinsics, height)
+    columns, rows = CELLS
+    for row, column in np.ndindex(rows, columns):
+        left, top = EDGE + column * WIDTH / columns, TOP + row * height / rows
+        colour = COVERED if intrinsics.covered[row, column] else EMPTY
+        drawing.box(left, top, left + WIDTH / columns - 1, top + height / rows - 1, colour)
     _draw_views(drawing, views, scale)
     magnification = _magnification(intrinsics.residuals_px)
     _draw_residuals(drawing, intrinsics.residuals_px, views, scale, magnification)
     _draw_legend(drawing, height + TOP + 14, magnification)
     _draw_figures(drawing, intrinsics, views, WIDTH + 2 * EDGE)
     return drawing.png()
-
-
-def _draw_cells(drawing: Drawing, intrinsics: Intrinsics, height: int) -> None:
-    columns, rows = CELLS
-    for row, column in np.ndindex(rows, columns):
-        left, top = EDGE + column * WIDTH / columns, TOP + row * height / rows
-        colour = COVERED if intrinsics.covered[row, column] else EMPTY
-        drawing.box(left, top, left + WIDTH / columns - 1, top + height / rows - 1, colour)
 
 
 def _draw_views(drawing: Drawing, views: Sequence[View], scale: float) -> None:

@@ -60,7 +60,10 @@ def estimate_extrinsics(pairs: Sequence[Pair], markers: Calibration, people: Cal
     adjustment = _adjusted(pairs, *cameras, float(np.median(noise_px)))
     if reasons := _contradictions(adjustment, pairs, noise_px) or _undetermined(adjustment):
         raise PoorSetError(reasons)
-    return _extrinsics(adjustment)
+    transform = np.eye(4)
+    transform[:3, :3], _ = cv2.Rodrigues(adjustment.people_from_markers[:3])
+    transform[:3, 3] = adjustment.people_from_markers[3:]
+    return Extrinsics(transform, _rms_px(adjustment), adjustment.rms_px, *_deviations(adjustment))
 
 
 def _noise_px(view: View, camera: CameraModel) -> float:
@@ -141,14 +144,6 @@ def _undetermined(adjustment: BundleAdjustment) -> list[str]:
         f"deg, at most {MOST_POSITION_DEVIATION_MM:g} mm and {MOST_ROTATION_DEVIATION_DEG:g} deg are accepted; "
         "show the board closer, tilted, and at different places in both images"
     ]
-
-
-def _extrinsics(adjustment: BundleAdjustment) -> Extrinsics:
-    """Write the transform as a matrix (4, 4), with its quality."""
-    transform = np.eye(4)
-    transform[:3, :3], _ = cv2.Rodrigues(adjustment.people_from_markers[:3])
-    transform[:3, 3] = adjustment.people_from_markers[3:]
-    return Extrinsics(transform, _rms_px(adjustment), adjustment.rms_px, *_deviations(adjustment))
 
 
 def _deviations(adjustment: BundleAdjustment) -> tuple[float, float]:

@@ -19,7 +19,7 @@ LARGEST_PIXELS = 10_000 * 10_000  # 100 MB of grey levels; no camera has more
 
 
 class UnusablePictureError(ValueError):
-    """A picture that cannot be used for calibration: `name` tells which one, the message why."""
+    """A picture that cannot be used for calibration: `name` is its name, the message gives the reason."""
 
     def __init__(self, name: str, problem: str) -> None:
         super().__init__(f"{name}: {problem}")

@@ -49,9 +49,6 @@ class Tile:
         inside = self.size_mm + self.white_mm - 1
         for text, font, largest, above in ((label[0], BOLD, 10, 5.6), (label[1], REGULAR, 8, 2.2)):
             sheet.text(text, start, bottom + above, points_that_fit(text, inside, font, largest), font)
-        self._cut_marks(sheet, left, bottom)
-
-    def _cut_marks(self, sheet: Sheet, left: float, bottom: float) -> None:
         for x, inwards_x in ((left, CUT_MM), (left + self.width_mm, -CUT_MM)):
             for y, inwards_y in ((bottom, CUT_MM), (bottom + self.height_mm, -CUT_MM)):
                 sheet.line((x, y), (x + inwards_x, y), CUT_LINE_MM)

@@ -14,7 +14,7 @@ PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff")
 
 
 class PairingError(ValueError):
-    """Files that form no pairs; the message tells which, and how to name them."""
+    """Files that form no pairs; the message names them, and the names that are needed."""
 
 
 @dataclass(frozen=True)

@@ -65,7 +65,7 @@ class Sheet:
 
 
 def document(size_mm: tuple[float, float], title: str, drawers: Sequence[Callable[[Sheet], None]]) -> bytes:
-    """Write a PDF, one page for each drawer; viewers are told not to scale it. The output is reproducible."""
+    """Write a PDF, one page for each drawer; viewers are asked not to scale it. The output is reproducible."""
     file = io.BytesIO()
     canvas = Canvas(file, pagesize=(size_mm[0] * mm, size_mm[1] * mm), invariant=1)
     canvas.setTitle(title)

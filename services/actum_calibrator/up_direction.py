@@ -60,30 +60,23 @@ class UpDirectionEstimator:
             self.instruction = problem
             self._axes.clear()
             return
-        self._keep(frame.stamp_ns, (frame.session_id, frame.agents[0].agent), axis)
-        self.instruction = STAY
-        if len(self._axes) >= FEWEST_FRAMES and self._axes[-1][0] - self._axes[0][0] >= SPAN_NS:
-            self._judge()
-
-    def _keep(self, stamp_ns: int, who: tuple[str, int], axis: Array) -> None:
-        """Add a body's axis (3,); start anew after a gap or with another person; drop axes older than the span."""
-        if self._axes and not (who == self._who and 0 < stamp_ns - self._axes[-1][0] <= LONGEST_GAP_NS):
+        who = frame.session_id, frame.agents[0].agent
+        if self._axes and not (who == self._who and 0 < frame.stamp_ns - self._axes[-1][0] <= LONGEST_GAP_NS):
             self._axes.clear()
         self._who = who
-        self._axes.append((stamp_ns, axis))
-        while len(self._axes) > FEWEST_FRAMES and stamp_ns - self._axes[1][0] >= SPAN_NS:
+        self._axes.append((frame.stamp_ns, axis))
+        while len(self._axes) > FEWEST_FRAMES and frame.stamp_ns - self._axes[1][0] >= SPAN_NS:
             self._axes.popleft()
-
-    def _judge(self) -> None:
-        """Set the up direction to the mean axis if the body was still, else the instruction."""
-        axes = np.array([axis for _, axis in self._axes])
-        mean = axes.mean(axis=0)
-        up = mean / np.linalg.norm(mean)
-        sway_deg = math.degrees(float(np.sqrt(np.square(axes - up).sum(axis=1).mean())))
-        if sway_deg > MOST_SWAY_DEG:
-            self.instruction = f"stand still: the body sways by more than {MOST_SWAY_DEG:g} degrees"
-        else:
-            self.up = UpDirection((float(up[0]), float(up[1]), float(up[2])), sway_deg)
+        self.instruction = STAY
+        if len(self._axes) >= FEWEST_FRAMES and self._axes[-1][0] - self._axes[0][0] >= SPAN_NS:
+            axes = np.array([axis for _, axis in self._axes])
+            mean = axes.mean(axis=0)
+            up = mean / np.linalg.norm(mean)
+            sway_deg = math.degrees(float(np.sqrt(np.square(axes - up).sum(axis=1).mean())))
+            if sway_deg > MOST_SWAY_DEG:
+                self.instruction = f"stand still: the body sways by more than {MOST_SWAY_DEG:g} degrees"
+            else:
+                self.up = UpDirection((float(up[0]), float(up[1]), float(up[2])), sway_deg)
 
 
 def _axis(frame: Skeleton) -> tuple[str, Array | None]:
@@ -97,11 +90,7 @@ def _axis(frame: Skeleton) -> tuple[str, Array | None]:
     unseen = [name for name, point in known.items() if point is None]
     if unseen:
         return f"not visible: {', '.join(unseen)}; step back, or tilt the camera", None
-    return _straight({name: point for name, point in known.items() if point is not None})
-
-
-def _straight(points: dict[str, Array]) -> tuple[str, Array | None]:
-    """Return "" and the direction (3,) from the feet to the neck, or an instruction and None if the body is bent."""
+    points = {name: point for name, point in known.items() if point is not None}
     hips, knees, feet = ((points[f"left_{name}"] + points[f"right_{name}"]) / 2 for name in ("hip", "knee", "foot"))
     parts = [_unit(to - start) for start, to in ((feet, knees), (knees, hips), (hips, points["neck"]))]
     bend_deg = max(_angle_deg(parts[0], parts[1]), _angle_deg(parts[1], parts[2]))

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from actum.arrays import Array, Mask
+from actum.arrays import Array
 from actum_calibrator.board_views import View
 from actum_calibrator.pairs import Pair
 from actum_calibrator.view_set import (
@@ -28,7 +28,7 @@ COLUMNS = ("left", "centre", "right")
 
 
 class Stillness:
-    """Tells whether the board rests: its outline has moved by at most 0.3 % of the diagonal since the last picture."""
+    """Judges whether the board rests: its outline has moved by at most 0.3 % of the diagonal since the last picture."""
 
     def __init__(self) -> None:
         self._last_px: Array | None = None
@@ -70,7 +70,11 @@ class ViewCollector:
             return "tilt the board by about 30 deg, left, right, up or down"
         covered = covered_cells(self.views)
         if covered.mean() < GOOD_COVERAGE:
-            return f"show the board at the {_emptiest(covered)}, tilted"
+            rows = np.array_split(np.arange(CELLS[1]), 3)
+            columns = np.array_split(np.arange(CELLS[0]), 3)
+            share = [[covered[np.ix_(down, across)].mean() for across in columns] for down in rows]
+            row, column = divmod(int(np.argmin(share)), 3)
+            return f"show the board at the {ROWS[row]} {COLUMNS[column]} of the image, tilted"
         if len(self.views) < ENOUGH_VIEWS or shortcomings(self.views):
             return "show the board tilted another way, closer or further away"
         return None
@@ -111,12 +115,3 @@ def is_new(view: View, taken: Sequence[View]) -> bool:
 def _moved_px(one_px: Array, other_px: Array) -> float:
     """Return the largest motion of the board's outer corners (4, 2) between two views."""
     return float(np.linalg.norm(one_px - other_px, axis=1).max())
-
-
-def _emptiest(covered: Mask) -> str:
-    """Name the ninth of the image with the smallest share of covered cells (rows, columns)."""
-    rows = np.array_split(np.arange(CELLS[1]), 3)
-    columns = np.array_split(np.arange(CELLS[0]), 3)
-    share = [[covered[np.ix_(down, across)].mean() for across in columns] for down in rows]
-    row, column = divmod(int(np.argmin(share)), 3)
-    return f"{ROWS[row]} {COLUMNS[column]} of the image"

@@ -116,7 +116,10 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         stamps_ns = [int(Decimal(row["stamp"]) * 10**9) for row in rows]
         postures = [_posture(row, ns, sensor, path.stem) for row, ns in zip(rows, stamps_ns, strict=True)]
         objects = _objects(rows, stamps_ns, sensor, path.stem)
-        _check_targets(labels, _bodies(rows))
+        bodies = _bodies(rows)
+        for label in labels:
+            if label.target is not None and label.target not in bodies:
+                raise ValueError(f"the labels refer to a {OBJECTS[label.target]}, for which the table has no columns")
         kept = [label for label in labels if label.first < label.last]
         marks = [m for i, label in enumerate(kept) for m in _marks(label, _id(path, label, i), stamps_ns, sensor)]
         truths = [t for i, label in enumerate(kept) for t in _truths(label, _id(path, label, i), stamps_ns, sensor)]
@@ -173,12 +176,6 @@ def _bodies(rows: Sequence[Row]) -> dict[int, str]:
     return {known[name]: body for body in bodies if (name := body.lower().replace("_", "")) in known}
 
 
-def _check_targets(labels: Sequence[Label], bodies: Mapping[int, str]) -> None:
-    for label in labels:
-        if label.target is not None and label.target not in bodies:
-            raise ValueError(f"the labels refer to a {OBJECTS[label.target]}, for which the table has no columns")
-
-
 def _objects(rows: Sequence[Row], stamps_ns: Sequence[int], sensor: str, session_id: str) -> list[Objects]:
     """Read the objects of each frame; one that the cameras lost keeps its last position, unseen."""
     last: dict[int, TrackedObject] = {}
@@ -188,24 +185,20 @@ def _objects(rows: Sequence[Row], stamps_ns: Sequence[int], sensor: str, session
         for number, body in bodies.items():
             position = _position(row, body)
             if position is not None:
-                last[number] = _tracked(number, position, _quaternion(row, body))
+                x, y, z, w = (float(row[f"{body}_q{axis}"]) for axis in "xyzw")
+                last[number] = TrackedObject(
+                    id=number,
+                    name=OBJECTS[number],
+                    position_m=position,
+                    quaternion_xyzw=[*camera_from_world((x, y, z)), w],
+                    confidence=1.0,
+                    seen=True,
+                )
             elif number in last:
                 last[number] = last[number].model_copy(update={"seen": False, "confidence": 0.0})
         listed = list(last.values())
         frames.append(Objects(stamp_ns=stamp_ns, sensor=sensor, objects=listed, session_id=session_id))
     return frames
-
-
-def _tracked(number: int, position: Point, quaternion: Point) -> TrackedObject:
-    return TrackedObject(
-        id=number, name=OBJECTS[number], position_m=position, quaternion_xyzw=quaternion, confidence=1.0, seen=True
-    )
-
-
-def _quaternion(row: Row, body: str) -> Point:
-    """Read an orientation in the camera frame (4,; x, y, z, w); the body's own axes are turned as the world's are."""
-    x, y, z, w = (float(row[f"{body}_q{axis}"]) for axis in "xyzw")
-    return [*camera_from_world((x, y, z)), w]
 
 
 def _labels(folder: Path, person: str, take: str) -> list[Label]:

@@ -24,7 +24,7 @@ NOT_IN_NAMES = re.compile(r"[^\w.-]+")
 
 @dataclass(frozen=True)
 class Naming:
-    """How a clip's file name, without its ending, tells the action and the person.
+    """How a clip's file name, without its ending, gives the action and the person.
 
     Attributes:
         pattern: matches the whole name; has a group `action`, and may have one `person`.
@@ -58,7 +58,7 @@ class Naming:
         return cls(compiled, {key.strip(): name.strip() for key, _, name in pairs})
 
     def read(self, path: Path) -> tuple[str, str]:
-        """Return a clip's action and person ("" where the name does not tell).
+        """Return a clip's action and person ("" where the name gives none).
 
         Raises:
             DatasetError: the name does not match.
@@ -112,7 +112,7 @@ def read_clip(
     """Estimate the poses in a clip as the camera source does; `opened` makes a new estimator for each clip.
 
     Raises:
-        DatasetError: the name does not tell the action, or the file is no video.
+        DatasetError: the name gives no action, or the file is no video.
     """
     action, person = naming.read(path)
     name, counters = recording_name(path), Counters()

@@ -178,7 +178,7 @@ def import_video(
     optics: Optics,
     opened: Callable[[], AbstractContextManager[Estimator]],
 ) -> ImportReport:
-    """Write one recording per clip, the whole of it one segment labelled as its name tells; no image is kept.
+    """Write one recording per clip, the whole of it one segment labelled by its name; no image is kept.
 
     Raises:
         DatasetError: there is no clip, one's name or content is not of that form, or two have the same name.
@@ -201,7 +201,9 @@ def import_takes(source: str, takes: Iterable[Take], total: int, out: Path, prog
     """
     report = ImportReport()
     for given in takes:
-        outside = _outside(given)
+        stamps_ns = [frame.stamp_ns for frame in given.frames]
+        first_ns, last_ns = min(stamps_ns, default=0) - MAX_SKEW_NS, max(stamps_ns, default=0) + MAX_SKEW_NS
+        outside = sorted({mark.segment_id for mark in given.marks if not first_ns <= (mark.stamp_ns or 0) <= last_ns})
         take = replace(given, marks=[mark for mark in given.marks if mark.segment_id not in outside])
         report.outside += [f"{take.name} {segment_id}" for segment_id in outside]
         file = out / f"{take.name}.mcap"
@@ -209,10 +211,3 @@ def import_takes(source: str, takes: Iterable[Take], total: int, out: Path, prog
         report.add(take)
         progress(report.files, total)
     return report
-
-
-def _outside(take: Take) -> list[str]:
-    """Return the ids of the segments of which a mark lies where whoever reads a recording would skip it."""
-    stamps_ns = [frame.stamp_ns for frame in take.frames]
-    first_ns, last_ns = min(stamps_ns, default=0) - MAX_SKEW_NS, max(stamps_ns, default=0) + MAX_SKEW_NS
-    return sorted({mark.segment_id for mark in take.marks if not first_ns <= (mark.stamp_ns or 0) <= last_ns})

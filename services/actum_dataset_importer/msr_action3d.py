@@ -10,13 +10,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Skeleton, segment_marks
-from actum.skeletons import to_actum
+from actum.messages import Skeleton, segment_marks
 from actum_dataset_importer.takes import (
     DatasetError,
     Take,
-    camera_joints,
     files_of,
+    frame_of_person,
     frame_without_person,
     read_rows,
     stamp_of,
@@ -115,7 +114,4 @@ def _skeleton(i: int, rows: NDArray[np.float64], sensor: str, session_id: str) -
     stamp_ns = stamp_of(i, FRAMES_PER_SECOND)
     if not rows.any():
         return frame_without_person(stamp_ns, sensor, session_id)
-    joints: list[list[float]] = to_actum(rows.tolist(), "msr-action3d-20")
-    confidence = [joint[3] for joint in joints]
-    agent = Agent(agent=1, joints=camera_joints([joint[:3] for joint in joints]), confidence=confidence)
-    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
+    return frame_of_person(stamp_ns, rows, sensor, session_id, "msr-action3d-20")

@@ -17,15 +17,8 @@ from zipfile import BadZipFile
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Segment, Skeleton, segment_marks
-from actum.skeletons import JOINTS, to_actum
-from actum_dataset_importer.takes import (
-    DatasetError,
-    Take,
-    camera_joints,
-    files_of,
-    frame_without_person,
-)
+from actum.messages import Segment, Skeleton, segment_marks
+from actum_dataset_importer.takes import DatasetError, Take, files_of, frame_of_person, frame_without_person
 
 Integers = NDArray[np.int64]
 
@@ -76,7 +69,7 @@ class Stream:
 
     @property
     def named(self) -> dict[str, str]:
-        """What its name tells, by kind: instruction, set, gesture, number, person."""
+        """The parts of its name, by kind: instruction, set, gesture, number, person."""
         match = NAME.fullmatch(self.name)
         assert match is not None
         return match.groupdict()
@@ -189,13 +182,6 @@ def spans_about(points_us: Integers, first_us: int, last_us: int) -> list[tuple[
     return [span if span[0] < span[1] else None for span in spans]
 
 
-def skeleton(stamp_ns: int, joints_m: list[list[float]], sensor: str, session_id: str) -> Skeleton:
-    """Return the frame of one person by their twenty joints (20, 3) in the set's axes."""
-    own: list[list[float]] = to_actum(joints_m, "kinect-v1-20")
-    agent = Agent(agent=1, joints=camera_joints(own), confidence=[1.0] * len(JOINTS))
-    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
-
-
 def _names(file: Path) -> list[str]:
     try:
         with file.open("rb") as stored, np.load(stored) as arrays:
@@ -208,7 +194,7 @@ def _skeleton(stamp_us: int, joints_mm: Integers, sensor: str, session_id: str) 
     stamp_ns = int(stamp_us) * 1000
     if not joints_mm.any():
         return frame_without_person(stamp_ns, sensor, session_id)
-    return skeleton(stamp_ns, (joints_mm / 1000).tolist(), sensor, session_id)
+    return frame_of_person(stamp_ns, joints_mm / 1000, sensor, session_id)
 
 
 def _marks(span_us: tuple[int, int] | None, sensor: str, segment_id: str, label: str) -> list[Segment]:

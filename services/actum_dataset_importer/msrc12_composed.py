@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from actum.messages import Segment, segment_marks
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX, KINECT_V1_20
-from actum_dataset_importer.msrc12 import Stream, skeleton, stored_stream
+from actum_dataset_importer.msrc12 import Stream, stored_stream
 from actum_dataset_importer.msrc12_cuts import cuts_of, resting_pose
-from actum_dataset_importer.takes import DatasetError, Take, stamp_of
+from actum_dataset_importer.takes import DatasetError, Take, frame_of_person, stamp_of
 
 Floats = NDArray[np.float64]
 
@@ -73,7 +73,8 @@ def composed(path: Path, names: Sequence[str], sensor: str) -> Iterator[Take]:
     for number in range(STREAMS):
         own = slice(number * REPETITIONS, (number + 1) * REPETITIONS)
         pieces = [piece for of_one in drawn.values() for piece in of_one[own]]
-        if not _can_be_mixed(pieces):
+        labels = [piece.label for piece in pieces]
+        if not labels or 2 * max(map(labels.count, labels)) > len(labels) + 1:
             raise DatasetError(
                 f"{path} holds too few different gestures to compose a recording of them: use the data set's own files"
             )
@@ -108,13 +109,11 @@ def mixed(pieces: Sequence[Piece], rng: np.random.Generator) -> list[Piece]:
             return order
 
 
-def _can_be_mixed(pieces: Sequence[Piece]) -> bool:
-    labels = [piece.label for piece in pieces]
-    return bool(labels) and 2 * max(map(labels.count, labels)) <= len(labels) + 1
-
-
 def _joined(pieces: Sequence[Piece], name: str, person: str, sensor: str) -> Take:
-    moved = _to_one_place([piece.joints_m for piece in pieces])
+    pieces_m = [piece.joints_m for piece in pieces]
+    moved = [piece_m.copy() for piece_m in pieces_m]
+    for piece_m in moved:
+        piece_m[..., _HORIZONTAL] += (pieces_m[0][0, _TORSO] - piece_m[0, _TORSO])[_HORIZONTAL]
     frames = np.concatenate(list(_with_frames_between(moved)))
     lengths = [len(piece.joints_m) + JOINING_FRAMES for piece in pieces]
     offsets = np.concatenate([[0], np.cumsum(lengths)[:-1]]).tolist()
@@ -122,29 +121,19 @@ def _joined(pieces: Sequence[Piece], name: str, person: str, sensor: str) -> Tak
     take = Take(
         name,
         person=person,
-        frames=[skeleton(stamp_of(i, RATE_HZ), frame.tolist(), sensor, name) for i, frame in enumerate(frames)],
+        frames=[frame_of_person(stamp_of(i, RATE_HZ), frame, sensor, name) for i, frame in enumerate(frames)],
         marks=[mark for piece, offset in placed for mark in _marks(piece, offset, sensor)],
         metadata={"composed_of": "MSRC-12"},
     )
-    take.set_action_points({piece.segment_id: _point_ns(piece, offset) for piece, offset in placed})
+    take.set_action_points(
+        {piece.segment_id: round((offset + piece.point) * SECOND_NS / RATE_HZ) for piece, offset in placed}
+    )
     return take
 
 
 def _marks(piece: Piece, offset: int, sensor: str) -> list[Segment]:
     start_ns, end_ns = stamp_of(offset + piece.start, RATE_HZ), stamp_of(offset + piece.end, RATE_HZ)
     return segment_marks(start_ns, end_ns, sensor, piece.segment_id, piece.label)
-
-
-def _point_ns(piece: Piece, offset: int) -> int:
-    return round((offset + piece.point) * SECOND_NS / RATE_HZ)
-
-
-def _to_one_place(pieces_m: Sequence[Floats]) -> list[Floats]:
-    """Move pieces (n, 20, 3) horizontally so that each begins where the first one begins."""
-    moved = [piece_m.copy() for piece_m in pieces_m]
-    for piece_m in moved:
-        piece_m[..., _HORIZONTAL] += (pieces_m[0][0, _TORSO] - piece_m[0, _TORSO])[_HORIZONTAL]
-    return moved
 
 
 def _with_frames_between(pieces_m: Sequence[Floats]) -> Iterator[Floats]:

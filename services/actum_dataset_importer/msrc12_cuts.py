@@ -107,7 +107,14 @@ def cuts_of(stream: Stream, rest_m: Floats) -> list[Cut | None]:
         return [None] * len(stream.points_us)
     speeds, distances = movement.speeds, _mean_distance(movement.poses_m - rest_m)
     unrest = speeds / (np.median(speeds) + EPSILON) + distances / (np.median(distances) + EPSILON)
-    parts = _parts(unrest, movement.stamps_us, stream.points_us)
+    points_us = stream.points_us
+    reach_us = int(np.median(np.diff(points_us))) if len(points_us) > 1 else REACH_US
+    bounds_us = [int(points_us[0]) - reach_us, *points_us.tolist(), int(points_us[-1]) + reach_us]
+    parting = [_least(unrest, movement.stamps_us, *between_us) for between_us in pairwise(bounds_us)]
+    parts = [
+        (first, last) if first is not None and last is not None and last - first >= FEWEST_FRAMES else None
+        for first, last in pairwise(parting)
+    ]
     return [None if part is None else _trimmed(movement, *part, distances) for part in parts]
 
 
@@ -121,17 +128,6 @@ def _movement(stream: Stream) -> Movement | None:
     poses_m -= poses_m[:, [INDEX["torso"]]]
     speeds = _mean_distance(np.gradient(poses_m, axis=0)) / np.gradient(stamps_us * 1000 / SECOND_NS)
     return Movement(frames, stamps_us, poses_m, speeds)
-
-
-def _parts(unrest: Floats, stamps_us: NDArray[np.int64], points_us: NDArray[np.int64]) -> list[tuple[int, int] | None]:
-    """Return first and last frame about each point: those of least unrest towards the points beside it."""
-    reach_us = int(np.median(np.diff(points_us))) if len(points_us) > 1 else REACH_US
-    bounds_us = [int(points_us[0]) - reach_us, *points_us.tolist(), int(points_us[-1]) + reach_us]
-    parting = [_least(unrest, stamps_us, *between_us) for between_us in pairwise(bounds_us)]
-    return [
-        (first, last) if first is not None and last is not None and last - first >= FEWEST_FRAMES else None
-        for first, last in pairwise(parting)
-    ]
 
 
 def _least(unrest: Floats, stamps_us: NDArray[np.int64], start_us: int, end_us: int) -> int | None:

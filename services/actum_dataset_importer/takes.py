@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Segment, Skeleton
+from actum.messages import Agent, Segment, Skeleton
 from actum.node import SECOND_NS
 from actum.recording import ACTION_POINTS
+from actum.skeletons import JOINTS, to_actum
 
 
 class DatasetError(ValueError):
@@ -81,9 +82,22 @@ def frame_without_person(stamp_ns: int, sensor: str, session_id: str) -> Skeleto
     return Skeleton(stamp_ns=stamp_ns, sensor=sensor, valid=False, reason=reason, agents=[], session_id=session_id)
 
 
-def camera_joints(positions_m: list[list[float]]) -> list[list[float] | None]:
-    """Turn positions (n, 3; m; x left, y up, z forward) into the camera frame (x right, y down, z forward)."""
-    return [[-x, -y, z] for x, y, z in positions_m]
+def frame_of_person(
+    stamp_ns: int, joints_m: NDArray[np.float64], sensor: str, session_id: str, skeleton: str = "kinect-v1-20"
+) -> Skeleton:
+    """Return the frame of one person.
+
+    Args:
+        stamp_ns: of the frame.
+        joints_m: (20, 3), x left, y up, z forward; or (20, 4) with the confidence of each joint, which is otherwise 1.
+        sensor: the sensor's name.
+        session_id: of the recording.
+        skeleton: the map from the set's joints to ours, by its name in `SKELETON_MAPS`.
+    """
+    own = np.array(to_actum(joints_m.tolist(), skeleton))
+    confidence = own[:, 3].tolist() if own.shape[1] > 3 else [1.0] * len(JOINTS)
+    agent = Agent(agent=1, joints=(own[:, :3] * [-1.0, -1.0, 1.0]).tolist(), confidence=confidence)
+    return Skeleton(stamp_ns=stamp_ns, sensor=sensor, agents=[agent], session_id=session_id)
 
 
 def stamp_of(index: int, rate_hz: int) -> int:

@@ -11,11 +11,9 @@ from itertools import combinations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from actum.messages import Agent, Segment, Skeleton, segment_marks
-from actum.skeletons import JOINTS, to_actum
-from actum_dataset_importer.takes import DatasetError, Take, camera_joints, files_of, read_rows, stamp_of
+from actum.messages import Segment, segment_marks
+from actum_dataset_importer.takes import DatasetError, Take, files_of, frame_of_person, read_rows, stamp_of
 
 IMAGES_PER_SECOND = 30
 """The camera's rate (Hz); image numbers count at this rate."""
@@ -59,13 +57,20 @@ def read_recording(path: Path, sensor: str, segments: list[LabelledSegment] | No
     if match is None:
         raise DatasetError(f"{path} is not named like joints_s01_e01.txt: keep the data set's own file names")
     name = match[1]
-    rows = _rows(path)
+    rows = read_rows(path, columns=1 + 3 * SOURCE_JOINTS)
+    if rows[0, 0] < 0 or (np.diff(rows[:, 0]) < 0).any():
+        raise DatasetError(
+            f"{path}: the image numbers in the first column are negative or decrease: download the file again"
+        )
     is_first = np.append(True, np.diff(rows[:, 0]) != 0)
     segments = segments or []
     return Take(
         name,
         person=str(int(match["person"])),
-        frames=[_skeleton(row, sensor, name) for row in rows[is_first]],
+        frames=[
+            frame_of_person(_stamp_ns(int(row[0])), row[1:].reshape(SOURCE_JOINTS, 3), sensor, name)
+            for row in rows[is_first]
+        ],
         marks=[mark for segment in segments for mark in _marks(segment, sensor, name)],
         metadata={"execution": str(int(match["execution"]))},
         oddities=+Counter({DUPLICATE_ROW: int((~is_first).sum()), OVERLAPPING_PAIR: overlapping_pairs(segments)}),
@@ -126,22 +131,6 @@ def _labelled_segment(text: str) -> LabelledSegment | None:
         return LabelledSegment(match["label"], None)
     start, end = int(match["start"]), int(match["end"])
     return LabelledSegment(match["label"], (start, end)) if start <= end else None
-
-
-def _rows(path: Path) -> NDArray[np.float64]:
-    """Read the rows (rows, 61): an image number that never falls, and twenty joints (m)."""
-    rows = read_rows(path, columns=1 + 3 * SOURCE_JOINTS)
-    if rows[0, 0] < 0 or (np.diff(rows[:, 0]) < 0).any():
-        raise DatasetError(
-            f"{path}: the image numbers in the first column are negative or decrease: download the file again"
-        )
-    return rows
-
-
-def _skeleton(row: NDArray[np.float64], sensor: str, session_id: str) -> Skeleton:
-    joints: list[list[float]] = to_actum(row[1:].reshape(SOURCE_JOINTS, 3).tolist(), "kinect-v1-20")
-    agent = Agent(agent=1, joints=camera_joints(joints), confidence=[1.0] * len(JOINTS))
-    return Skeleton(stamp_ns=_stamp_ns(int(row[0])), sensor=sensor, agents=[agent], session_id=session_id)
 
 
 def _marks(segment: LabelledSegment, sensor: str, name: str) -> list[Segment]:

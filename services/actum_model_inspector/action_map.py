@@ -57,10 +57,17 @@ def action_map(maps: ModelMaps, segments: Sequence[AnsweredSegment] = ()) -> Fig
     size = max(SIDE_IN * som.cols / longest, 6.0), max(SIDE_IN * som.rows / longest, 3.0) + 0.85
     figure = figure_with_layout(*size, f"The map of actions: {som.rows} × {som.cols} units, {len(labels)} actions")
     axes = figure.add_subplot()
-    _draw_regions(axes, map_regions, len(labels))
+    strength = PALEST + (1 - PALEST) * map_regions.margins
+    draw_squares(axes, mixed_with_white(action_colours(len(labels))[map_regions.actions], strength))
+    axes.add_collection(LineCollection(borders(map_regions.actions), colors=PAPER, linewidths=2.0))
+    hide_axes(axes)
     dots = [segment for segment in segments if segment.action_unit is not None]
     names = _name_regions(axes, map_regions, labels)
-    _draw_dots(axes, som, dots)
+    units = np.array([dot.action_unit for dot in dots], dtype=np.intp)
+    x, y = (som.coordinates[units][:, ::-1] + spread_on_unit(units)).T
+    wrong = np.array([_is_mistake(dot) for dot in dots], dtype=bool)
+    axes.scatter(x, y, s=13, c=INK, edgecolors=PAPER, linewidths=0.6, zorder=3)
+    axes.scatter(x[wrong], y[wrong], s=80, facecolors="none", edgecolors=INK, zorder=3)
     axes.set_title(_legend(dots))
     without_region = [label for index, label in enumerate(labels) if not (map_regions.actions == index).any()]
     if without_region:
@@ -96,13 +103,6 @@ def spread_on_unit(units: Indices) -> Floats:
     return offsets
 
 
-def _draw_regions(axes: Axes, map_regions: Regions, actions: int) -> None:
-    strength = PALEST + (1 - PALEST) * map_regions.margins
-    draw_squares(axes, mixed_with_white(action_colours(actions)[map_regions.actions], strength))
-    axes.add_collection(LineCollection(borders(map_regions.actions), colors=PAPER, linewidths=2.0))
-    hide_axes(axes)
-
-
 def _name_regions(axes: Axes, map_regions: Regions, labels: Sequence[str]) -> list[Text]:
     """Write each action's name into the largest connected component of its region."""
     components = (largest_component(map_regions.actions == index) for index in range(len(labels)))
@@ -114,15 +114,6 @@ def _name_regions(axes: Axes, map_regions: Regions, labels: Sequence[str]) -> li
         )
         for label, (row, col) in middles.items()
     ]  # fmt: skip
-
-
-def _draw_dots(axes: Axes, som: Som, dots: Sequence[AnsweredSegment]) -> None:
-    """Draw a dot per segment, and a ring around one with a wrong answer."""
-    units = np.array([dot.action_unit for dot in dots], dtype=np.intp)
-    x, y = (som.coordinates[units][:, ::-1] + spread_on_unit(units)).T
-    wrong = np.array([_is_mistake(dot) for dot in dots], dtype=bool)
-    axes.scatter(x, y, s=13, c=INK, edgecolors=PAPER, linewidths=0.6, zorder=3)
-    axes.scatter(x[wrong], y[wrong], s=80, facecolors="none", edgecolors=INK, zorder=3)
 
 
 def _name_mistakes(axes: Axes, som: Som, dots: Sequence[AnsweredSegment]) -> list[Text]:
@@ -154,9 +145,9 @@ def _place_names(figure: Figure, regions: Sequence[Text], mistakes: Sequence[Tex
 
 
 def _placed(name: Text, places: Sequence[Place], page: BboxBase, taken: list[Bbox]) -> bool:
-    """Move a name by the first offset at which it is on the page and overlaps no box taken so far; tell whether one is.
+    """Move a name by the first offset at which it is on the page and overlaps no box taken so far.
 
-    Its box is taken then.
+    Return whether there is such an offset; its box is taken then.
     """
     x, y = name.get_position()
     for right, down, ha, va in places:

@@ -16,7 +16,7 @@ from actum_model_inspector.style import HALO, action_colours, axes_at, figure_wi
 from actum_model_inspector.text_layout import shortened, wrapped
 from som_classifier.model import Model, Recognition
 
-NAMED = 5  # lines with colour and name: more are hard to tell apart
+NAMED = 5  # lines with colour and name: more are hard to distinguish
 FIGURES = 6  # of the actor: as many as stand side by side without touching
 MAX_INSTANTS = 200  # at which the model answers: more bars than that melt into one another
 SIZE_IN = 10.5, 7.0  # width and height of the picture

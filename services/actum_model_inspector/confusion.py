@@ -5,7 +5,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from actum.arrays import Array, Indices
+from actum.arrays import Indices
 from actum_model_inspector.style import (
     FAINT,
     INK,
@@ -21,7 +21,7 @@ from actum_model_trainer.evaluation import Evaluation, wilson_interval
 CELL_IN = 0.42  # side of a cell: room for three digits
 NAME_COLUMNS = 24  # width of a line of an action's name, in small letters
 SHADES = mpl.colormaps["Blues"]
-_DARKEST = 0.85  # of the colour map: beyond, black ink could not be told from the ground
+_DARKEST = 0.85  # of the colour map: beyond, black ink could not be distinguished from the ground
 _WHITE_INK_FROM = 0.55  # share of the row from which on a count is written in white
 
 
@@ -37,7 +37,10 @@ def confusion_picture(evaluation: Evaluation) -> Figure:
     axes = figure.add_subplot()
     shares = counts / np.maximum(counts.sum(axis=1, keepdims=True), 1)
     draw_squares(axes, SHADES(_DARKEST * shares)[..., :3])
-    _write_counts(axes, counts, shares)
+    for (row, col), count in np.ndenumerate(counts):
+        if count:
+            colour = PAPER if shares[row, col] > _WHITE_INK_FROM else INK
+            axes.text(col, row, str(count), ha="center", va="center", color=colour)
     _name_rows_and_columns(axes, evaluation, names)
     axes.set_title(
         "row: what was done; column: what it was taken for; diagonal: right; shade: share of the row", wrap=True
@@ -52,13 +55,6 @@ def _counts(evaluation: Evaluation) -> tuple[Indices, list[str]]:
     if not any(rejected):
         return counts, evaluation.labels
     return np.column_stack([counts, rejected]), [*evaluation.labels, "(rejected)"]
-
-
-def _write_counts(axes: Axes, counts: Indices, shares: Array) -> None:
-    for (row, col), count in np.ndenumerate(counts):
-        if count:
-            colour = PAPER if shares[row, col] > _WHITE_INK_FROM else INK
-            axes.text(col, row, str(count), ha="center", va="center", color=colour)
 
 
 def _name_rows_and_columns(axes: Axes, evaluation: Evaluation, names: list[str]) -> None:

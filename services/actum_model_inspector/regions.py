@@ -37,7 +37,13 @@ def largest_component(mask: Mask) -> Indices:
     remaining = {(int(row), int(col)) for row, col in np.argwhere(mask)}
     largest: set[tuple[int, int]] = set()
     while remaining:
-        component = _component_at(next(iter(remaining)), remaining)
+        start = next(iter(remaining))
+        component, frontier = {start}, [start]
+        while frontier:
+            row, col = frontier.pop()
+            near = {(row - 1, col), (row + 1, col), (row, col - 1), (row, col + 1)} & remaining - component
+            component |= near
+            frontier += near
         remaining -= component
         largest = max(largest, component, key=len)
     return np.array(sorted(largest), dtype=np.intp).reshape(-1, 2)
@@ -49,29 +55,13 @@ def innermost_unit(component: Indices) -> tuple[int, int]:
     mean = component.mean(axis=0)
 
     def inwardness(unit: tuple[int, int]) -> tuple[int, float]:
-        return _inner_radius(unit, members), -float(np.hypot(*(np.array(unit) - mean)))
+        radius = 0
+        while all(
+            (unit[0] + down, unit[1] + right) in members
+            for down in range(-radius - 1, radius + 2)
+            for right in range(-radius - 1, radius + 2)
+        ):
+            radius += 1
+        return radius, -float(np.hypot(*(np.array(unit) - mean)))
 
     return max(sorted(members), key=inwardness)
-
-
-def _component_at(start: tuple[int, int], members: set[tuple[int, int]]) -> set[tuple[int, int]]:
-    """Return the members that are connected with a start, by common sides."""
-    component, frontier = {start}, [start]
-    while frontier:
-        row, col = frontier.pop()
-        near = {(row - 1, col), (row + 1, col), (row, col - 1), (row, col + 1)} & members - component
-        component |= near
-        frontier += near
-    return component
-
-
-def _inner_radius(unit: tuple[int, int], members: set[tuple[int, int]]) -> int:
-    """Return half the side, in units, of the largest square about a unit that lies within the component."""
-    radius = 0
-    while all(
-        (unit[0] + down, unit[1] + right) in members
-        for down in range(-radius - 1, radius + 2)
-        for right in range(-radius - 1, radius + 2)
-    ):
-        radius += 1
-    return radius

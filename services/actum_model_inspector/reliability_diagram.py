@@ -43,7 +43,13 @@ def reliability_picture(segments: Sequence[AnsweredSegment]) -> Figure:
     )
     upper, lower = figure.subplots(2, 1, height_ratios=[4, 1], sharex=True)
     _draw_accuracy(upper, filled_bins)
-    _draw_counts(lower, filled_bins)
+    lower.bar(
+        [each.low + 0.05 for each in filled_bins], [each.n for each in filled_bins], 0.085, color=ACCENT, alpha=0.35
+    )
+    for each in filled_bins:
+        lower.text(each.low + 0.05, each.n, str(each.n), ha="center", va="bottom", color=INK)
+    lower.set(xlabel="confidence of the answer", ylabel="answers")
+    lower.margins(y=0.25)
     return figure
 
 
@@ -61,13 +67,3 @@ def _draw_accuracy(axes: Axes, filled_bins: Sequence[ConfidenceBin]) -> None:
     axes.set(ylabel="share of right answers", xlim=(0, 1), ylim=(0, 1.02))
     reading = "on the dashed line, eight in ten of the answers given with 0.8 are right; bars: 95 % interval"
     axes.set_title(reading, wrap=True)
-
-
-def _draw_counts(axes: Axes, filled_bins: Sequence[ConfidenceBin]) -> None:
-    axes.bar(
-        [each.low + 0.05 for each in filled_bins], [each.n for each in filled_bins], 0.085, color=ACCENT, alpha=0.35
-    )
-    for each in filled_bins:
-        axes.text(each.low + 0.05, each.n, str(each.n), ha="center", va="bottom", color=INK)
-    axes.set(xlabel="confidence of the answer", ylabel="answers")
-    axes.margins(y=0.25)

@@ -20,7 +20,7 @@ from actum_model_inspector.text_layout import on_one_line, wrapped
 INK = "#222222"  # text and lines
 FAINT = "#767676"  # secondary text and lines: contrast 4.5:1 on the paper
 PAPER = "#ffffff"
-RIGHT = "#d55e00"  # the actor's right on every figure; the colour-blind can tell it from the left
+RIGHT = "#d55e00"  # the actor's right on every figure; the colour-blind can distinguish it from the left
 LEFT = "#0072b2"  # the actor's left
 ACCENT = "#0072b2"
 """The data of a diagram."""
@@ -29,7 +29,7 @@ _HUES = (
     "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
     "#882255", "#999933", "#332288", "#44aa99", "#b8705c", "#6f6f6f",
 )  # fmt: skip
-"""Six of the Okabe-Ito palette, four of Tol's muted one, two more: the colour-blind tell most of them apart."""
+"""Six of the Okabe-Ito palette, four of Tol's muted one, two more: the colour-blind can distinguish most of them."""
 _LIGHTER = 0.45  # share of white in a colour that comes a second time
 _TITLE_CHARACTERS_PER_IN = 8.5  # letters of a title
 _WIDER_SCRIPTS = (
@@ -143,7 +143,7 @@ def hide_axes(axes: Axes) -> None:
 def action_colours(actions: int) -> Floats:
     """Return one colour (RGB, 0 to 1) per action, shape (actions, 3); after the twelfth they repeat, lighter.
 
-    Nobody can tell twenty colours apart, so every use of them has names beside.
+    Nobody can distinguish twenty colours, so a name stands beside every use of them.
     """
     hues = np.array([to_rgb(hue) for hue in _HUES])
     rounds, index = np.divmod(np.arange(actions), len(hues))

@@ -46,7 +46,11 @@ def trace_picture(maps: ModelMaps, answered: AnsweredSegment) -> Figure:
     axes.set_title(f"{len(units)} stays on {len(np.unique(units))} units, framed in the colour of the first{mirror}")
     name_sides(axes)
     seconds = (answered.frames[-1].stamp_ns - answered.frames[0].stamp_ns) / SECOND_NS
-    _add_time_scale(figure, axes, seconds)
+    colours = TIME_COLOURS(np.linspace(0, _LATEST, 256))
+    scale = ScalarMappable(Normalize(0, max(seconds, 1e-3)), mpl.colors.ListedColormap(colours))
+    bar = figure.colorbar(scale, ax=axes, shrink=0.5, aspect=30, pad=0.01)
+    bar.set_label("time since the start (s)")
+    bar.outline.set_visible(False)
     return figure
 
 
@@ -119,11 +123,3 @@ def _name(axes: Axes, name: str, place: Floats, above: bool) -> None:
         name, (x, y - 0.5 if above else y + 0.5), (0, 2 if above else -2), textcoords="offset points", ha="center",
         va="bottom" if above else "top", weight="bold", path_effects=HALO, zorder=6, fontsize=11,
     ).set_in_layout(False)  # fmt: skip
-
-
-def _add_time_scale(figure: Figure, axes: Axes, seconds: float) -> None:
-    colours = TIME_COLOURS(np.linspace(0, _LATEST, 256))
-    scale = ScalarMappable(Normalize(0, max(seconds, 1e-3)), mpl.colors.ListedColormap(colours))
-    bar = figure.colorbar(scale, ax=axes, shrink=0.5, aspect=30, pad=0.01)
-    bar.set_label("time since the start (s)")
-    bar.outline.set_visible(False)

@@ -88,7 +88,20 @@ def catalogue(settings: Settings) -> Catalogue:
         UnknownMarkerError: the settings name a marker that their dictionary does not have.
     """
     if settings.scene is None:
-        return _from_settings(settings)
+        name = canonical(settings.dictionary)
+        if not settings.objects:
+            return Catalogue((name,), {}, {}, settings.marker_size_m)
+        ids = len(family(name).codes)
+        for number in settings.objects:
+            if not 0 <= number < ids:
+                raise UnknownMarkerError(
+                    f"objects: the dictionary {name} has no marker {number}: use ids from 0 to {ids - 1}"
+                )
+        markers = {
+            (name, number): MountedMarker(number, spec.size_m or settings.marker_size_m)
+            for number, spec in settings.objects.items()
+        }
+        return Catalogue((name,), markers, {number: spec.name for number, spec in settings.objects.items()})
     if settings.objects:
         raise SceneFileError(
             "the settings scene and objects both define which object carries which marker: set only one of the two"
@@ -124,24 +137,6 @@ def load(path: Path) -> Catalogue:
     return _from_scene(path, root, scene)
 
 
-def _from_settings(settings: Settings) -> Catalogue:
-    """Build the catalogue of the settings' objects: each carries the marker of its own id, in its centre."""
-    name = canonical(settings.dictionary)
-    if not settings.objects:
-        return Catalogue((name,), {}, {}, settings.marker_size_m)
-    ids = len(family(name).codes)
-    for number in settings.objects:
-        if not 0 <= number < ids:
-            raise UnknownMarkerError(
-                f"objects: the dictionary {name} has no marker {number}: use ids from 0 to {ids - 1}"
-            )
-    markers = {
-        (name, number): MountedMarker(number, spec.size_m or settings.marker_size_m)
-        for number, spec in settings.objects.items()
-    }
-    return Catalogue((name,), markers, {number: spec.name for number, spec in settings.objects.items()})
-
-
 def _from_scene(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
     markers: dict[Key, MountedMarker] = {}
     for location, key, mounted in _mounted_markers(path, root, scene):
@@ -156,7 +151,11 @@ def _from_scene(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
             )
         markers[key] = mounted
     families = tuple(sorted({name for name, _ in markers}))
-    _refuse_shared_codes(path, families)
+    for one, other in combinations(families, 2):
+        if family(one).cells == family(other).cells and family(one).codes[0, 0] == family(other).codes[0, 0]:
+            raise SceneFileError(
+                f"{path}: the dictionaries {one} and {other} contain the same markers: use only the larger dictionary"
+            )
     return Catalogue(families, markers, {number: entry.name for number, entry in scene.objects.items()})
 
 
@@ -184,15 +183,6 @@ def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[
                     f"the dictionary {name} has no marker {marker.id}: use ids from 0 to {ids - 1}",
                 )
             yield location, (name, marker.id), MountedMarker(number, size_m, marker.object_from_marker.transform())
-
-
-def _refuse_shared_codes(path: Path, families: tuple[str, ...]) -> None:
-    """Refuse dictionaries that hold the same markers, such as DICT_4X4_50 and DICT_4X4_100."""
-    for one, other in combinations(families, 2):
-        if family(one).cells == family(other).cells and family(one).codes[0, 0] == family(other).codes[0, 0]:
-            raise SceneFileError(
-                f"{path}: the dictionaries {one} and {other} contain the same markers: use only the larger dictionary"
-            )
 
 
 def _refuse_repeated_keys(path: Path, node: yaml.Node, done: set[yaml.Node]) -> None:

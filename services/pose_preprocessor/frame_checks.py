@@ -37,9 +37,20 @@ def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bon
             `not_finite`, `absurd_joint` or `absurd_bone`.
     """
     if missing:
-        _require_trunk([JOINTS[index] for index in missing])
+        names = [JOINTS[index] for index in missing]
+        if not _NEEDED.isdisjoint(names) or not any(pair.isdisjoint(names) for pair in _PAIRS):
+            raise BadFrameError("missing_joint", f"these joints are missing: {', '.join(names)}")
     if not (np.abs(joints) <= reach_limit_m).all():
-        _require_near(joints, missing, reach_limit_m)
+        known = [i for i in range(len(JOINTS)) if i not in missing]
+        for i in known:
+            if not np.isfinite(joints[i]).all():
+                raise BadFrameError("not_finite", f"a coordinate of {JOINTS[i]} is NaN or infinite")
+        for i in known:
+            if np.abs(joints[i]).max() > reach_limit_m:
+                raise BadFrameError(
+                    "absurd_joint",
+                    f"{JOINTS[i]} is further from the camera than the setting reach_limit_m, {reach_limit_m:g} m",
+                )
     bones = joints[_CHILDREN] - joints[_PARENTS]
     lengths2 = np.einsum("ij,ij->i", bones, bones)
     if np.fmax.reduce(lengths2) > bone_limit_m**2:
@@ -47,21 +58,3 @@ def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bon
         raise BadFrameError(
             "absurd_bone", f"the bone that ends at {child} is longer than the setting bone_limit_m, {bone_limit_m:g} m"
         )
-
-
-def _require_trunk(missing: Sequence[str]) -> None:
-    if not _NEEDED.isdisjoint(missing) or not any(pair.isdisjoint(missing) for pair in _PAIRS):
-        raise BadFrameError("missing_joint", f"these joints are missing: {', '.join(missing)}")
-
-
-def _require_near(joints: Array, missing: Sequence[int], reach_limit_m: float) -> None:
-    known = [i for i in range(len(JOINTS)) if i not in missing]
-    for i in known:
-        if not np.isfinite(joints[i]).all():
-            raise BadFrameError("not_finite", f"a coordinate of {JOINTS[i]} is NaN or infinite")
-    for i in known:
-        if np.abs(joints[i]).max() > reach_limit_m:
-            raise BadFrameError(
-                "absurd_joint",
-                f"{JOINTS[i]} is further from the camera than the setting reach_limit_m, {reach_limit_m:g} m",
-            )

@@ -57,26 +57,21 @@ class HeadingFilter:
         if before_ns is None or stamp_ns - before_ns > GAP_NS:
             self._span_s, self._mean, self._variance_rad2 = FIRST_S, left, 0.0
         else:
-            self._update(left, (stamp_ns - before_ns) / SECOND_NS)
+            elapsed_s = (stamp_ns - before_ns) / SECOND_NS
+            self._span_s += elapsed_s
+            smoothing_gain = 1.0 - math.exp(-elapsed_s / TIME_CONSTANT_S)
+            weight = max(smoothing_gain, elapsed_s / self._span_s)
+            (x, z), (left_x, left_z) = self._mean, left
+            self._mean = (x + weight * (left_x - x), z + weight * (left_z - z))
+            if math.hypot(*left) >= _SMALLEST:
+                error_rad = math.remainder(_yaw_rad(left) - _yaw_rad(self._mean), math.tau)
+                self._variance_rad2 += smoothing_gain * (error_rad * error_rad - self._variance_rad2)
         if math.hypot(*self._mean) >= _SMALLEST:
-            yaw_rad = self._shrunk_rad(_yaw_rad(self._mean))
+            seen_rad = _yaw_rad(self._mean)
+            variance = VARIANCE_INFLATION * self._variance_rad2
+            yaw_rad = seen_rad * (1.0 - max(math.cos(seen_rad), 0.0) * variance / (variance + FACING_SD_RAD**2))
             self._left = (math.cos(yaw_rad), math.sin(yaw_rad))
         return self._left
-
-    def _update(self, left: tuple[float, float], elapsed_s: float) -> None:
-        self._span_s += elapsed_s
-        smoothing_gain = 1.0 - math.exp(-elapsed_s / TIME_CONSTANT_S)
-        weight = max(smoothing_gain, elapsed_s / self._span_s)
-        (x, z), (left_x, left_z) = self._mean, left
-        self._mean = (x + weight * (left_x - x), z + weight * (left_z - z))
-        if math.hypot(*left) >= _SMALLEST:
-            error_rad = math.remainder(_yaw_rad(left) - _yaw_rad(self._mean), math.tau)
-            self._variance_rad2 += smoothing_gain * (error_rad * error_rad - self._variance_rad2)
-
-    def _shrunk_rad(self, yaw_rad: float) -> float:
-        """Return a yaw shrunk towards facing the camera, by its variance relative to the prior's."""
-        variance = VARIANCE_INFLATION * self._variance_rad2
-        return yaw_rad * (1.0 - max(math.cos(yaw_rad), 0.0) * variance / (variance + FACING_SD_RAD**2))
 
 
 def _yaw_rad(left: tuple[float, float]) -> float:

@@ -88,7 +88,15 @@ class PosePreprocessor:
             self._previous_ns = None
         postures = self._postures(message, self._lost.before(message.seq, order))
         self._previous_ns = message.stamp_ns
-        self._forget_absent(message)
+        # people who have left are forgotten: a tracker that numbers them anew at each return would pile them up
+        present = {agent.agent for agent in message.agents}
+        for agent in self._persons.keys() - present:
+            if self._persons[agent].motion.restarts_at(message.stamp_ns):
+                del self._persons[agent]
+        absent = [agent for agent in self._persons if agent not in present]
+        for agent in absent[: max(len(self._persons) - MOST_STREAMS, 0)]:
+            del self._persons[agent]
+            self.counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {agent} is forgotten")
         self._missing.report(message.stamp_ns)
         return postures
 
@@ -96,28 +104,13 @@ class PosePreprocessor:
         self._settings = settings
 
     def _postures(self, message: Skeleton, missed: int) -> list[Posture]:
-        agents = self._distinct_agents(message)
+        agents = list({agent.agent: agent for agent in message.agents}.values())
+        if len(agents) < len(message.agents):
+            self.counters.reject("repeated_agent", f"{len(message.agents)} agents, {len(agents)} distinct")
         if not agents:
             return [self._invalid(message, 0, message.reason or "no person", missed, [])]
         present = [agent.agent for agent in agents]
         return [self._posture(message, agent, missed, present) for agent in agents]
-
-    def _distinct_agents(self, message: Skeleton) -> list[Agent]:
-        agents = {agent.agent: agent for agent in message.agents}
-        if len(agents) < len(message.agents):
-            self.counters.reject("repeated_agent", f"{len(message.agents)} agents, {len(agents)} distinct")
-        return list(agents.values())
-
-    def _forget_absent(self, frame: Skeleton) -> None:
-        """Forget people who have left: a tracker that numbers them anew at each return would pile them up."""
-        present = {agent.agent for agent in frame.agents}
-        for agent in self._persons.keys() - present:
-            if self._persons[agent].motion.restarts_at(frame.stamp_ns):
-                del self._persons[agent]
-        absent = [agent for agent in self._persons if agent not in present]
-        for agent in absent[: max(len(self._persons) - MOST_STREAMS, 0)]:
-            del self._persons[agent]
-            self.counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {agent} is forgotten")
 
     def _posture(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
         if not frame.valid:

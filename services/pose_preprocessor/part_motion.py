@@ -29,7 +29,7 @@ class PartMotionFilter:
         self._smooth: Array = np.zeros((len(INDEX), 3))
 
     def restarts_at(self, stamp_ns: int) -> bool:
-        """Tell whether a step at this stamp would restart the filter, after a gap or for the first time."""
+        """Return whether a step at this stamp would restart the filter, after a gap or for the first time."""
         return self._stamp_ns is None or stamp_ns - self._stamp_ns > GAP_NS
 
     def step(self, stamp_ns: int, joints: Array) -> list[float]:
@@ -52,14 +52,10 @@ class PartMotionFilter:
         lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
         if math.isnan(lengths.sum()):
             self._smooth = np.where(np.isnan(steps), relative, self._smooth + steps)
-            return _means_where_known(lengths)
-        self._smooth = self._smooth + steps
-        motion: list[float] = (_IN_PART @ lengths / _PART_SIZES).tolist()
-        return motion
-
-
-def _means_where_known(lengths: Array) -> list[float]:
-    """Return the mean of the known lengths (15,) of each part, (5,)."""
-    known = ~np.isnan(lengths)
-    means: list[float] = (_IN_PART @ np.where(known, lengths, 0.0) / np.maximum(_IN_PART @ known, 1.0)).tolist()
-    return means
+            known = ~np.isnan(lengths)
+            motion = _IN_PART @ np.where(known, lengths, 0.0) / np.maximum(_IN_PART @ known, 1.0)
+        else:
+            self._smooth = self._smooth + steps
+            motion = _IN_PART @ lengths / _PART_SIZES
+        means: list[float] = motion.tolist()
+        return means

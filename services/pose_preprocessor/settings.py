@@ -6,7 +6,7 @@ from actum.settings import ServiceSettings
 
 
 class Settings(ServiceSettings):
-    """What the preprocessor can be told beside what every service can."""
+    """Settings of the preprocessor, beside those of every service."""
 
     reach_limit_m: float = Field(
         10.0,

@@ -28,7 +28,7 @@ class Ros2Bridge:
     def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
         self._settings = settings
-        self._camera_told = settings.ros_frame_id is not None
+        self._camera_published = settings.ros_frame_id is not None
 
     def foreign_node(self, session_id: str) -> ForeignNode:
         """Return the ROS 2 node that the bridge is in the Zenoh session of this id."""
@@ -37,7 +37,10 @@ class Ros2Bridge:
     def handle(self, message: Message | Tick) -> Iterable[Foreign]:
         """Turn a message into one for each of its topics that is chosen; the first tick says how the camera lies."""
         if isinstance(message, Tick):
-            return self._camera()
+            if self._camera_published:
+                return []
+            self._camera_published = True
+            return self._on(topics.TF_STATIC, conversion.optical_in_link, self._settings.sensor)
         if not isinstance(message, Skeleton | Objects | Event):
             return []
         if isinstance(message, Skeleton | Objects) and not message.valid:
@@ -75,13 +78,6 @@ class Ros2Bridge:
         if topic.chosen_by not in self._settings.ros_topics:
             return []
         return [Foreign(topic.name, to_cdr(convert(*given, self._settings.frame_id)))]
-
-    def _camera(self) -> list[Foreign]:
-        """Return once where the camera's own frames lie; where they are the robot's, that says it."""
-        if self._camera_told:
-            return []
-        self._camera_told = True
-        return self._on(topics.TF_STATIC, conversion.optical_in_link, self._settings.sensor)
 
     def _usable(self, agent: Agent, stamp_ns: int) -> Array:
         """Return an agent's joints (15, 3), NaN where one is missing, not finite or absurdly far away."""

@@ -73,7 +73,7 @@ def optical_from_body(joints: Array) -> Array | None:
         joints: (15, 3), camera frame, NaN where unknown.
 
     Returns:
-        None where the known joints do not tell how the body stands.
+        None where the known joints do not determine how the body stands.
     """
     try:
         ego_from_optical = geometry.ego_from_camera(joints)

@@ -76,11 +76,9 @@ def _default(name: str) -> Any:
     """Make the message of a type in which nothing is set, which is shared and not to be changed."""
     if name == "geometry_msgs/msg/Quaternion":
         return _store().types[name](x=0.0, y=0.0, z=0.0, w=1.0)
-    return _store().types[name](**{field: _default_of(*description) for field, description in _fields(name)})
-
-
-def _fields(name: str) -> list[tuple[str, Any]]:
-    return list(_store().fielddefs[name][1])
+    return _store().types[name](
+        **{field: _default_of(*description) for field, description in _store().fielddefs[name][1]}
+    )
 
 
 def _default_of(kind: Nodetype, description: Any) -> Any:

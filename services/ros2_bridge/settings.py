@@ -22,7 +22,7 @@ def _names(value: Any) -> Any:
 
 
 class Settings(ServiceSettings):
-    """What the bridge can be told beside what every service can."""
+    """Settings of the bridge, beside those of every service."""
 
     ros_domain_id: int = Field(0, ge=0, le=HIGHEST_DOMAIN, description="the ROS_DOMAIN_ID of your ROS 2 nodes")
     ros_namespace: str | None = Field(

@@ -16,7 +16,7 @@ from scene_simulator.settings import Settings
 from scene_simulator.simulated_scene import Scene
 from scene_simulator.simulator import Simulator, session_of
 from scene_simulator.timeline import Episode, resetting, still
-from scene_simulator.trial import Trial, draw_bulge, draw_timing
+from scene_simulator.trial import draw_bulge, draw_timing
 
 MOST_WAITING = 20
 """Performances that may wait: enough for a script that asks ahead, and the memory stays bounded."""
@@ -97,7 +97,11 @@ class DrivenScene(Scene):
 
     def _act(self, task: Task, pause_s: float, person: EverydayPerson | None) -> Iterator[Episode]:
         """Yield an action and the pause after it; before it the way to where its object stands, where that changes."""
-        number, trial = len(self.trials), self._varied(task)
+        number = len(self.trials)
+        trial = self._drawn.setdefault(task, self._trial(number, task))
+        rng = random_stream("driven", *self.seeds, number)
+        timing = draw_timing(self.parameters.trial, self.actor, task.action, rng)
+        trial = replace(trial, timing=timing, bulge_m=draw_bulge(self.parameters.trial, self.actor, rng))
         self.trials = (*self.trials, trial)
         self.programme.append(task)
         if trial.layout is not self._layout:
@@ -111,13 +115,6 @@ class DrivenScene(Scene):
             self.parameters, done, trial.layout, pause_s, min(trial.pause_s, RETURN_SHARE * pause_s)
         )
         yield self._newest
-
-    def _varied(self, task: Task) -> Trial:
-        """Return the trial of a task as it was drawn first, with another tempo and another bulge of the way."""
-        trial = self._drawn.setdefault(task, self._trial(len(self.trials), task))
-        rng = random_stream("driven", *self.seeds, len(self.trials))
-        timing = draw_timing(self.parameters.trial, self.actor, task.action, rng)
-        return replace(trial, timing=timing, bulge_m=draw_bulge(self.parameters.trial, self.actor, rng))
 
 
 class DrivenSimulator(Simulator):

@@ -134,9 +134,7 @@ class Figure:
         polygon(canvas, ellipse_px(centre + 0.10 * down, unit, 1.26), shade(self._skin, 0.75))
         polygon(canvas, ellipse_px(centre + 0.08 * down, 0.93 * unit, 1.26), self._skin)
         polygon(canvas, ellipse_px(centre - 0.68 * down, 0.98 * unit, 0.56), self._hair)
-        self._draw_face(canvas, centre + unit * np.array([turn, 0.0]), unit)
-
-    def _draw_face(self, canvas: Canvas, centre_px: Array, unit: float) -> None:
+        centre_px = centre + unit * np.array([turn, 0.0])
         for side in (-1, 1):
             eye_px = centre_px + unit * np.array([side * 0.36, 0.08])
             polygon(canvas, ellipse_px(eye_px, 0.15 * unit, 0.8), (240, 240, 240))

@@ -133,7 +133,12 @@ def gesture(motion: Motion) -> None:
     """Talk with one hand or with both: strokes to changing places before the body, some just above the table."""
     hands = (LEFT, RIGHT) if motion.rng.random() < 0.5 else (motion.one_hand(),)
     for _ in range(motion.rng.integers(4, 12)):
-        places = {hand: motion.on_body(hand, _before_the_body(motion)) for hand in hands}
+        places = {
+            hand: motion.on_body(
+                hand, (motion.uniform(0.02, 0.19), motion.uniform(0.04, 0.26), motion.uniform(0.13, 0.20))
+            )
+            for hand in hands
+        }
         twist, lean = np.deg2rad(motion.uniform(-8, 8)), np.deg2rad(motion.uniform(-2, 4))
         motion.move(places, haste=motion.uniform(0.9, 1.6), twist_rad=twist, lean_rad=lean)
         if motion.rng.random() < 0.3:
@@ -154,7 +159,3 @@ def wipe_hands(motion: Motion) -> None:
 def _scratch(motion: Motion, hand: int, along: Array) -> None:
     amplitude = motion.uniform(0.010, 0.022) * along
     motion.beat({hand: amplitude * (SIDES[hand], 1, 1)}, hz=(3.0, 4.5), seconds=(0.8, 3.0))
-
-
-def _before_the_body(motion: Motion) -> tuple[float, float, float]:
-    return motion.uniform(0.02, 0.19), motion.uniform(0.04, 0.26), motion.uniform(0.13, 0.20)

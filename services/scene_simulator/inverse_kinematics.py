@@ -80,7 +80,16 @@ def pose(actor: Actor, stance: Stance, hands_m: Array) -> Array:
         elbow, hand = _bend_arm(actor, trunk, side, shoulder, hands_m[:, column])
         for part, position in (("shoulder", shoulder), ("elbow", elbow), ("hand", hand)):
             joints[:, INDEX[f"{name}_{part}"]] = position
-        _place_leg(joints, actor, stance, name, side)
+        left, up, forward = stance.axes()
+        hip = stance.pelvis_m + side * HIP_SIDE * actor.height_m * left
+        foot = hip - (HIP_HEIGHT - FOOT_HEIGHT) * actor.height_m * up + 0.02 * forward + 0.02 * side * left
+        knee = hip + KNEE_SHARE * (foot - hip) + 0.02 * forward
+        swing, bend = stance.legs_rad[:, 0 if side == 1 else 1].T
+        knee_moved = _turned(knee - hip, left, swing) - (knee - hip)
+        foot_moved = _turned(foot - knee, left, swing - bend) - (foot - knee)
+        joints[:, INDEX[f"{name}_hip"]] = hip
+        joints[:, INDEX[f"{name}_knee"]] = knee + knee_moved
+        joints[:, INDEX[f"{name}_foot"]] = foot + knee_moved + foot_moved
     return joints
 
 
@@ -154,7 +163,9 @@ class _Trunk:
 
     def _needed_lean(self, actor: Actor, lean_rad: Array, hand_m: Array) -> Array:
         """Find by bisection the additional lean (T,; rad) with which the arm is stretched comfortably at most."""
-        wanted = _soft_minimum(self._distance(hand_m) / actor.arm_m) * actor.arm_m
+        stretch = self._distance(hand_m) / actor.arm_m
+        excess = (stretch - COMFORTABLE_STRETCH) / STRETCH_SOFTNESS
+        wanted = (stretch - STRETCH_SOFTNESS * np.logaddexp(0.0, excess)) * actor.arm_m  # min(x, c), its kink softened
         low, high = np.zeros_like(lean_rad), np.full_like(lean_rad, LEAN_LIMIT_RAD)
         for _ in range(BISECTIONS):
             middle = (low + high) / 2
@@ -162,12 +173,6 @@ class _Trunk:
             too_far = self._distance(hand_m) > wanted
             low, high = np.where(too_far, middle, low), np.where(too_far, high, middle)
         return high
-
-
-def _soft_minimum(stretch: Array) -> Array:
-    """Limit a stretch (T,) smoothly to the comfortable one c: min(x, c) with softplus in place of the kink."""
-    excess = (stretch - COMFORTABLE_STRETCH) / STRETCH_SOFTNESS
-    return np.asarray(stretch - STRETCH_SOFTNESS * np.logaddexp(0.0, excess))
 
 
 def _bend_arm(actor: Actor, trunk: _Trunk, side: int, shoulder: Array, hand: Array) -> tuple[Array, Array]:
@@ -180,20 +185,6 @@ def _bend_arm(actor: Actor, trunk: _Trunk, side: int, shoulder: Array, hand: Arr
     foot = (upper**2 - fore**2 + distance**2) / (2 * distance)
     height = np.sqrt(np.maximum(upper**2 - foot**2, 0.0))
     return shoulder + foot * along + height * pole, shoulder + distance * along
-
-
-def _place_leg(joints: Array, actor: Actor, stance: Stance, name: str, side: int) -> None:
-    """Write one leg's hip, knee and foot into the joints (T, 15, 3)."""
-    left, up, forward = stance.axes()
-    hip = stance.pelvis_m + side * HIP_SIDE * actor.height_m * left
-    foot = hip - (HIP_HEIGHT - FOOT_HEIGHT) * actor.height_m * up + 0.02 * forward + 0.02 * side * left
-    knee = hip + KNEE_SHARE * (foot - hip) + 0.02 * forward
-    swing, bend = stance.legs_rad[:, 0 if side == 1 else 1].T
-    knee_moved = _turned(knee - hip, left, swing) - (knee - hip)
-    foot_moved = _turned(foot - knee, left, swing - bend) - (foot - knee)
-    joints[:, INDEX[f"{name}_hip"]] = hip
-    joints[:, INDEX[f"{name}_knee"]] = knee + knee_moved
-    joints[:, INDEX[f"{name}_foot"]] = foot + knee_moved + foot_moved
 
 
 def _turned(vectors: Array, left: Array, forward_rad: Array) -> Array:

@@ -108,19 +108,14 @@ def _between(poses: Sequence[KeyPose], rate_hz: int) -> tuple[Array, tuple[str |
         ways_m = end.hands_m - start.hands_m
         values[:, [1, 4]] += ARC_SHARE * np.linalg.norm(ways_m, axis=1) * bump(share)[:, None]
         values[:, [2, 5]] += FORWARD_SHARE * np.abs(ways_m[:, 1]) * bump(share)[:, None]
-        values[:, :6] += _beat(end, time).reshape(count, 6)
+        ramp = min(BEAT_RAMP_S, time[-1] / 2)
+        rising = minimum_jerk(elapsed_share(time, 0.0, ramp))
+        falling = minimum_jerk(elapsed_share(time, time[-1] - ramp, ramp))
+        wave = np.sin(2 * np.pi * end.beat_hz * time) * (rising - falling)
+        values[:, :6] += (wave[:, None, None] * end.beat_m).reshape(count, 6)
         parts.append(values)
         doings += [end.doing] * count
     return np.concatenate(parts), tuple(doings)
-
-
-def _beat(pose: KeyPose, time_s: Array) -> Array:
-    """Return the repeated movement of the hands (T, 2, 3; m) on the way to a pose at times (T,)."""
-    ramp = min(BEAT_RAMP_S, time_s[-1] / 2)
-    rising = minimum_jerk(elapsed_share(time_s, 0.0, ramp))
-    falling = minimum_jerk(elapsed_share(time_s, time_s[-1] - ramp, ramp))
-    wave = np.sin(2 * np.pi * pose.beat_hz * time_s) * (rising - falling)
-    return np.asarray(wave[:, None, None] * pose.beat_m)
 
 
 def _gait(shift_m: Array, rate_hz: int) -> tuple[Array, Array]:

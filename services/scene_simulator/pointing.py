@@ -27,7 +27,13 @@ def pointing_palm(
     for _ in range(ITERATIONS):
         joints = pose(actor, stance, hands)
         eye_m = eye(actor, stance, joints)[0]
-        tip = _tip_on_ray(actor, eye_m, joints[0], _rotated_ray(target_m - eye_m, error_rad), stand_off_m)
+        ray = target_m - eye_m
+        side = np.cross(ray, [0.0, -1.0, 0.0])
+        side /= np.linalg.norm(side)
+        length = np.linalg.norm(ray)
+        over = np.cross(side, ray / length)
+        turned = ray / length + np.tan(error_rad[0]) * side + np.tan(error_rad[1]) * over
+        tip = _tip_on_ray(actor, eye_m, joints[0], length * turned / np.linalg.norm(turned), stand_off_m)
         hands[0, column] = tip - (fingertip(actor, joints) - joints[:, INDEX[f"{actor.hand}_hand"]])[0]
     return np.asarray(hands[0, column])
 
@@ -41,13 +47,3 @@ def _tip_on_ray(actor: Actor, eye_m: Array, joints_m: Array, ray: Array, stand_o
     along = float(offset @ direction)
     stretched = -along + np.sqrt(max(along**2 - float(offset @ offset) + reach**2, 0.0))
     return np.asarray(eye_m + min(length - stand_off_m, stretched) * direction)
-
-
-def _rotated_ray(ray: Array, error_rad: Array) -> Array:
-    """Rotate a ray (3,) by small angles (2,; azimuth, elevation), keeping its length."""
-    side = np.cross(ray, [0.0, -1.0, 0.0])
-    side /= np.linalg.norm(side)
-    length = np.linalg.norm(ray)
-    over = np.cross(side, ray / length)
-    turned = ray / length + np.tan(error_rad[0]) * side + np.tan(error_rad[1]) * over
-    return np.asarray(length * turned / np.linalg.norm(turned))

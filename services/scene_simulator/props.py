@@ -49,23 +49,19 @@ class MarkerCard:
         width, height = (high - low).tolist()
         if width <= 0 or height <= 0:
             return
-        card, cover = self._warped((corners - low + 0.5) * OVERSAMPLING - 0.5, width, height)
+        side = len(self._texture) - 0.5
+        flat = np.array([[-0.5, -0.5], [side, -0.5], [side, side], [-0.5, side]], dtype=np.float32)
+        homography = cv2.getPerspectiveTransform(flat, ((corners - low + 0.5) * OVERSAMPLING - 0.5).astype(np.float32))
+        fine = (width * OVERSAMPLING, height * OVERSAMPLING)
+        printed = cv2.warpPerspective(self._texture, homography, fine).astype(np.float32)
+        brightness, coverage = cv2.split(cv2.resize(printed, (width, height), interpolation=cv2.INTER_AREA))
+        card, cover = np.asarray(brightness, dtype=float)[..., None], np.asarray(coverage, dtype=float)[..., None] / 255
         patch = canvas[low[1] : high[1], low[0] : high[0]]
         patch[:] = np.round(card + (1 - cover) * patch)
 
     def _corners_px(self, camera: Pinhole, camera_from_object: Array) -> Array:
         """Return the card's corners (4, 2) in the image, at a pose (4, 4)."""
         return camera.project(_transformed(camera_from_object, self._corners_m))
-
-    def _warped(self, corners_px: Array, width: int, height: int) -> tuple[Array, Array]:
-        """Return the card's brightness and its coverage of each pixel (0 to 1), each (height, width, 1)."""
-        side = len(self._texture) - 0.5
-        flat = np.array([[-0.5, -0.5], [side, -0.5], [side, side], [-0.5, side]], dtype=np.float32)
-        homography = cv2.getPerspectiveTransform(flat, corners_px.astype(np.float32))
-        fine = (width * OVERSAMPLING, height * OVERSAMPLING)
-        printed = cv2.warpPerspective(self._texture, homography, fine).astype(np.float32)
-        brightness, coverage = cv2.split(cv2.resize(printed, (width, height), interpolation=cv2.INTER_AREA))
-        return np.asarray(brightness, dtype=float)[..., None], np.asarray(coverage, dtype=float)[..., None] / 255
 
 
 class Prop:

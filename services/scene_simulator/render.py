@@ -66,8 +66,12 @@ class Renderer:
             for row in range(len(self._props))
             if self._table_y_m - state.riser_tops_m[row, 1] > VISIBLE_RISER_M
         ]
-        if state.grip > 0 and state.target is not None:
-            strokes.append(self._finger_stroke(state, state.target))
+        if state.grip > 0 and state.target is not None:  # the closed hand's fingers before the face that they hold
+            position = state.positions_m[state.target]
+            edge = position - (0.0, self._items[state.target].size_m[1] / 2, 0.0)
+            down = np.array([0.0, max(state.finger_overlap_m, 0.0), 0.0])
+            depth = float(position[2]) - 0.01
+            strokes.append((depth, lambda canvas: self._figure.draw_fingers(canvas, self.camera, state, (edge, down))))
         return strokes
 
     def _object_stroke(self, state: SceneState, row: int) -> Stroke:
@@ -77,11 +81,3 @@ class Renderer:
     def _riser_stroke(self, row: int, top_m: Array) -> Stroke:
         prop = self._props[row]
         return float(top_m[2]) + 0.005, lambda canvas: prop.draw_riser(canvas, self.camera, top_m, self._table_y_m)
-
-    def _finger_stroke(self, state: SceneState, target: int) -> Stroke:
-        """Return the drawing of the closed hand's fingers in front of the face that they hold."""
-        position = state.positions_m[target]
-        edge = position - (0.0, self._items[target].size_m[1] / 2, 0.0)
-        down = np.array([0.0, max(state.finger_overlap_m, 0.0), 0.0])
-        depth = float(position[2]) - 0.01
-        return depth, lambda canvas: self._figure.draw_fingers(canvas, self.camera, state, (edge, down))

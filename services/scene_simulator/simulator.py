@@ -26,7 +26,7 @@ class Simulator:
     """A source of skeletons, images and truth; the same arguments give the same messages, bit for bit.
 
     `image_hz` must divide the frame rate; 0 means no images. The first and the last frame of each action have a
-    `Truth`; the last one tells the object's displacement in the camera frame. `everyday` doings have no truth; while
+    `Truth`; the last one contains the object's displacement in the camera frame. `everyday` doings have no truth; while
     the person is out of view the skeletons have no agent. The glass and the phone of everyday doings are not drawn.
 
     Raises:
@@ -90,7 +90,7 @@ class Simulator:
         return self._start_ns + (frame * SECOND_NS + self._rate_hz // 2) // self._rate_hz
 
     def segment_id(self, number: int) -> str:
-        """Return the segment id of a repetition by its number; the id does not tell the action."""
+        """Return the segment id of a repetition by its number; the id does not reveal the action."""
         actor_seed, seed = self._seeds
         return f"s{actor_seed}-{seed}-{number:03d}"
 

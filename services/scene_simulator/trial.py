@@ -112,7 +112,9 @@ def draw_layout(
     heights = np.array([item.size_m[1] for item in items])
     x = places + draw_normals(rng, objects.place_jitter_x_sd_m, len(items))
     z = rng.uniform(*objects.place_z_range_m, size=len(items))
-    pelvis = _draw_pelvis(parameters, actor, rng)
+    aside_m, ahead_m = draw_normals(rng, parameters.trial.stance_sd_m, 2)
+    hips_y_m = parameters.camera.height_m - HIP_HEIGHT * actor.height_m
+    pelvis = np.array([actor.stand_x_m + aside_m, hips_y_m, parameters.table.far_z_m + actor.stand_off_m + ahead_m])
     return Layout(
         positions_m=np.stack([x, parameters.table_y_m - risers - heights / 2, z], axis=-1),
         yaw_rad=np.deg2rad(draw_normals(rng, objects.yaw_sd_deg, len(items))),
@@ -121,13 +123,6 @@ def draw_layout(
         heading_rad=actor.heading_rad + np.deg2rad(draw_normal(rng, (0.0, parameters.trial.heading_sd_deg))),
         rest_m=np.stack([_draw_rest(parameters, pelvis[0], side, rng) for side in (1, -1)]),
     )
-
-
-def _draw_pelvis(parameters: Parameters, actor: Actor, rng: np.random.Generator) -> Array:
-    """Draw the pelvis (3,) of the person, who stands on the floor behind the table's far edge."""
-    x, z = draw_normals(rng, parameters.trial.stance_sd_m, 2)
-    y = parameters.camera.height_m - HIP_HEIGHT * actor.height_m
-    return np.array([actor.stand_x_m + x, y, parameters.table.far_z_m + actor.stand_off_m + z])
 
 
 def _draw_rest(parameters: Parameters, middle_x_m: float, side: int, rng: np.random.Generator) -> Array:

@@ -74,7 +74,8 @@ class CameraSource:
                 for captured in self._watched(capture):
                     if isinstance(captured, Picture):
                         back_off.worked()
-                        self._tell_rate(capture)
+                        if capture.rate_hz is not None and math.isfinite(capture.rate_hz):
+                            self.counters.details["rate_hz"] = f"{capture.rate_hz:g}"
                     yield captured
             except CaptureEndedError:
                 return
@@ -82,11 +83,10 @@ class CameraSource:
                 yield str(error)
             finally:
                 capture.close()
-            yield from self._waiting(back_off.failed())
-
-    def _tell_rate(self, capture: Capture) -> None:
-        if capture.rate_hz is not None and math.isfinite(capture.rate_hz):
-            self.counters.details["rate_hz"] = f"{capture.rate_hz:g}"
+            due_ns = self._now_ns() + back_off.failed()
+            while (left_ns := due_ns - self._now_ns()) > 0:
+                yield None
+                self._pause(min(left_ns / SECOND_NS, PATIENCE_S))
 
     def _watched(self, capture: Capture) -> Iterator[Captured]:
         """Yield a capture's pictures until it is lost; frozen or black pictures count as lost unless from a file."""
@@ -97,12 +97,6 @@ class CameraSource:
             if complaint is not None and self._watch.lost:
                 raise CameraLostError(complaint)
             yield picture if complaint is None else complaint
-
-    def _waiting(self, wait_ns: int) -> Iterator[None]:
-        due_ns = self._now_ns() + wait_ns
-        while (left_ns := due_ns - self._now_ns()) > 0:
-            yield None
-            self._pause(min(left_ns / SECOND_NS, PATIENCE_S))
 
     def _messages(self, captured: Captured, perceiver: Perceiver) -> Iterator[list[Message]]:
         if captured is None and self._reported is not None:

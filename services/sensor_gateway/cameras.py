@@ -4,7 +4,6 @@ from collections.abc import Callable, Generator
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from actum.calibration import Calibration, CalibrationError
 from sensor_gateway.camera_source import CameraSource
@@ -24,7 +23,7 @@ Recorded = Callable[[Path, int], Generator[Picture, None, None]]
 
 
 class DepthSourceError(ValueError):
-    """The settings name no usable depth camera; the message tells what is wrong and what to do."""
+    """The settings name no usable depth camera; the message names the problem and the remedy."""
 
 
 class MarkerCamera(CameraSource):
@@ -136,21 +135,17 @@ def openni2_of(settings: Settings, start_ns: int) -> CameraSource:
     openni2_library.library()
     nite2 = nite.nite() if settings.path is None else None
     if nite2 is not None:
-        return _nite_source(settings, f"openni2-{start_ns}", nite2)
+        return CameraSource(
+            lambda: nullcontext(Nobody()),
+            _depth_optics(settings),
+            open_capture=lambda: nite.NiteCapture(nite2, _size_of(settings), settings.field_of_view_deg),
+            sensor=settings.sensor,
+            session_id=f"openni2-{start_ns}",
+            perceiver=UsersPerceiver,
+        )
     live = partial(openni2.OpenNi2Capture, _size_of(settings), settings.field_of_view_deg)
     recorded = partial(openni2.recorded_pictures, field_of_view_deg=settings.field_of_view_deg)
     return _depth_source(settings, f"openni2-{start_ns}", live, recorded)
-
-
-def _nite_source(settings: Settings, session_id: str, nite2: Any) -> CameraSource:
-    return CameraSource(
-        lambda: nullcontext(Nobody()),
-        _depth_optics(settings),
-        open_capture=lambda: nite.NiteCapture(nite2, _size_of(settings), settings.field_of_view_deg),
-        sensor=settings.sensor,
-        session_id=session_id,
-        perceiver=UsersPerceiver,
-    )
 
 
 def _depth_source(settings: Settings, session_id: str, live: Callable[[], Capture], recorded: Recorded) -> CameraSource:

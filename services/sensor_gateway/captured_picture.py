@@ -1,6 +1,6 @@
 """A captured picture: a stamped colour image, and perhaps depth, or people whom the device's software tracks."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +33,3 @@ class UsersPicture(DepthPicture):
     """A picture with the people whom the device's own software tracks."""
 
     agents: tuple[Agent, ...]
-
-
-def unmirrored(picture: Picture) -> Picture:
-    """Flip a mirror image back: mirrored, left and right hands would be exchanged and markers could not be read."""
-    return replace(picture, image_bgr=np.ascontiguousarray(picture.image_bgr[:, ::-1]))

@@ -1,11 +1,11 @@
 """The optics of a camera: its intrinsics, and the placing of people in its camera frame."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from actum.calibration import Calibration
-from sensor_gateway.captured_picture import DepthPicture, Picture, unmirrored
+from sensor_gateway.captured_picture import DepthPicture, Picture
 from sensor_gateway.lens import Lens
 from sensor_gateway.people.depth_lifting import lifted
 from sensor_gateway.people.landmarks import Landmarks
@@ -19,19 +19,13 @@ SAME_CAMERA = np.eye(4).ravel().tolist()
 class Optics:
     """A colour camera: its calibration, or else its field of view; and the stature of the people, if known.
 
-    `mirrored` tells that the camera gives mirror images, as some webcams do.
+    `mirrored` is true if the camera gives mirror images, as some webcams do.
     """
 
     field_of_view_deg: float = 60.0
     calibration: Calibration | None = None
     person_height_m: float | None = None
     mirrored: bool = False
-
-    def lens(self, width: int, height: int) -> Lens | None:
-        """Return the lens for images of a size; None if the calibration is for another size."""
-        if self.calibration is None:
-            return Lens.of_field_of_view(width, height, self.field_of_view_deg)
-        return Lens.of_calibration(self.calibration) if (width, height) == self.calibration.image_size else None
 
     @property
     def skeleton_from_image(self) -> list[float]:
@@ -40,13 +34,17 @@ class Optics:
         return SAME_CAMERA if calibrated is None else calibrated
 
     def unmirrored(self, picture: Picture) -> Picture:
-        """Return a picture flipped back if the camera mirrors its images."""
-        return unmirrored(picture) if self.mirrored else picture
+        """Flip a mirror image back, in which hands would be exchanged and markers could not be read."""
+        return (
+            replace(picture, image_bgr=np.ascontiguousarray(picture.image_bgr[:, ::-1])) if self.mirrored else picture
+        )
 
     def lens_of(self, picture: Picture) -> Lens | None:
         """Return the lens a picture was taken with; None where another size was calibrated."""
         height, width = picture.image_bgr.shape[:2]
-        return self.lens(width, height)
+        if self.calibration is None:
+            return Lens.of_field_of_view(width, height, self.field_of_view_deg)
+        return Lens.of_calibration(self.calibration) if (width, height) == self.calibration.image_size else None
 
     def placed(self, landmarks: Landmarks, lens: Lens, picture: Picture) -> Placed:
         """Place one person's landmarks in the camera frame, at the distance estimated from the body's size.

@@ -1,15 +1,17 @@
 """Builds the source that the settings name."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
+from urllib.parse import urlsplit
 
 from actum.calibration import Calibration
 from actum.node import Source
 from sensor_gateway.camera_source import CameraSource
 from sensor_gateway.cameras import camera_of, marker_camera_of, openni2_of, realsense_of
+from sensor_gateway.devices.video import SUFFIXES
 from sensor_gateway.mapped_source import MappedSource, with_calibration, with_session_of, with_up, without_image
 from sensor_gateway.recording_source import LoopedSource, RecordingSource
 from sensor_gateway.settings import Settings
-from sensor_gateway.source_description import description
 
 CAMERAS: Mapping[str, Callable[[Settings, int], CameraSource]] = {
     "camera": camera_of,
@@ -61,3 +63,18 @@ def _recording(settings: Settings, start_ns: int) -> Source:
     calibration = Calibration.load(settings.calibration)
     source.counters.details["calibration"] = calibration.id
     return MappedSource(source, with_calibration(calibration, source.counters))
+
+
+def description(settings: Settings) -> str:
+    """Describe the source for `info`, by which a user notices that the wrong file, folder or camera is read."""
+    if settings.source in ("camera", "marker-camera"):
+        kind, camera = settings.source.replace("-", " "), settings.camera
+        if "://" in camera:
+            parts = urlsplit(camera)  # user name, password and query are left out: they may hold secrets
+            return f"{kind} {parts.scheme}://{parts.netloc.rpartition('@')[2]}{parts.path}"
+        if Path(camera).is_file() or Path(camera).suffix.lower() in SUFFIXES:
+            return f"file {camera} ({kind})"
+        return f"{kind} {camera}"
+    if settings.path is None:
+        return f"depth camera ({settings.source})"
+    return f"{'folder' if settings.path.is_dir() else 'file'} {settings.path} ({settings.source})"

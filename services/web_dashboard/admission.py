@@ -78,20 +78,21 @@ class Admission:
             return self._refusal(FORBIDDEN, f"a page of {headers.get('origin')!r} may not come in here")
         if self._rule.token is None or self._has_cookie(scope, headers):
             return None
-        if scope["type"] == "http" and self._has_token(scope):
+        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
+        if scope["type"] == "http" and hmac.compare_digest(given.encode(), (self._rule.token or "").encode()):
             answer = RedirectResponse("/", status_code=303)
             answer.set_cookie(_cookie_name(scope), self._secret, httponly=True, samesite="strict", max_age=30 * 86400)
             return answer
         return self._refusal(UNAUTHORIZED, TOKEN_NEEDED)
 
-    def _refusal(self, status: int, told: str) -> Response:
+    def _refusal(self, status: int, refusal: str) -> Response:
         advice = self._rule.advice.get(status)
-        told = f"{told}: {advice}" if advice else told
-        self._refused(told.partition("\n")[0][:200])
-        return PlainTextResponse(told, status)
+        answer = f"{refusal}: {advice}" if advice else refusal
+        self._refused(answer.partition("\n")[0][:200])
+        return PlainTextResponse(answer, status)
 
     def _is_ours(self, host: str) -> bool:
-        """Tell whether a Host header names this machine: by an address, or by a name that is known to be its."""
+        """Return whether a Host header names this machine: by an address, or by a name that is known to be its."""
         try:
             name = urlsplit(f"//{host}").hostname or ""
         except ValueError:
@@ -110,10 +111,6 @@ class Admission:
         except CookieError:
             return False
         return cookie is not None and hmac.compare_digest(cookie.value.encode(), self._secret.encode())
-
-    def _has_token(self, scope: Scope) -> bool:
-        given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
-        return hmac.compare_digest(given.encode(), (self._rule.token or "").encode())
 
 
 def _cookie_name(scope: Scope) -> str:

@@ -150,7 +150,7 @@ class Connection:
 
 
 def _greeting(settings: Settings) -> str:
-    """Return what a browser is told first."""
+    """Return the first message to a browser."""
     return text(
         type="hello",
         version=__version__,
@@ -173,7 +173,7 @@ def _tell_bug(task: asyncio.Task[None], orders: Orders) -> None:
 
 
 async def _pulse(settings: Settings, hub: Hub, orders: Orders) -> None:
-    """Tell all browsers twice a second that the page is served, whether there is a router, and who is silent."""
+    """Publish to all browsers twice a second that the page is served, whether there is a router, and who is silent."""
     while True:
         connected = orders.client is not None and orders.client.connected()
         silent_s = {stream: s for stream, s in hub.silent_s().items() if stream.startswith("status/")}

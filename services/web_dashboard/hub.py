@@ -92,7 +92,12 @@ class Mailbox:
         with self._lock:
             was_empty = not (self._queue or self._newest)
             for envelope in envelopes:
-                self._take(envelope)
+                if envelope.queued:
+                    self._queue.append(envelope)
+                else:
+                    self._newest[envelope.stream] = envelope
+                    if len(self._newest) > MOST_STREAMS:
+                        self._newest.popitem(last=False)
             filled = was_empty and bool(self._queue or self._newest)
         if filled:
             self._wake()
@@ -104,14 +109,6 @@ class Mailbox:
             self._queue.clear()
             self._newest.clear()
         return [envelope.payload for envelope in waiting]
-
-    def _take(self, envelope: Envelope) -> None:
-        if envelope.queued:
-            self._queue.append(envelope)
-        else:
-            self._newest[envelope.stream] = envelope
-            if len(self._newest) > MOST_STREAMS:
-                self._newest.popitem(last=False)
 
 
 class Hub:

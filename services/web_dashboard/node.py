@@ -55,7 +55,12 @@ class WebDashboard:
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Give a message to the browsers; at a tick, count what browsers were refused."""
         if isinstance(message, Tick):
-            self._count()
+            if not self._server.working:
+                raise RuntimeError("the web server of the page stopped unexpectedly: see the messages before this one")
+            while self._orders.refused:
+                self.counters.reject("refused_browser", self._orders.refused.popleft())
+            if self._hub.left_out:
+                self.counters.counts["left_out"] = self._hub.left_out
         elif self._hub.watched or not isinstance(message, Image):
             self._hub.publish(envelope_of(message))
         return ()
@@ -72,11 +77,3 @@ class WebDashboard:
     def working(self) -> bool:
         """Whether browsers are served."""
         return self._server.working
-
-    def _count(self) -> None:
-        if not self._server.working:
-            raise RuntimeError("the web server of the page stopped unexpectedly: see the messages before this one")
-        while self._orders.refused:
-            self.counters.reject("refused_browser", self._orders.refused.popleft())
-        if self._hub.left_out:
-            self.counters.counts["left_out"] = self._hub.left_out

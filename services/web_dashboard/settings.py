@@ -18,7 +18,7 @@ def _names(value: object) -> object:
 
 
 def is_local(host: str) -> bool:
-    """Tell whether what is served at an address is reached by this machine alone."""
+    """Return whether what is served at an address is reached by this machine alone."""
     try:
         return host == "localhost" or ip_address(host).is_loopback
     except ValueError:
@@ -26,7 +26,7 @@ def is_local(host: str) -> bool:
 
 
 class Settings(ServiceSettings):
-    """What the page's service can be told beside what every service can."""
+    """Settings of the page's service, beside those of every service."""
 
     page_host: str = Field(
         "127.0.0.1",

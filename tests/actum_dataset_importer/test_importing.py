@@ -106,15 +106,6 @@ def test_segments_outside_of_the_frames_are_skipped_and_named(tmp_path: Path) ->
     assert {mark.label for mark in marks if mark.kind == "start"} == {"push"}
 
 
-def test_a_recording_that_is_there_is_not_overwritten(tmp_path: Path) -> None:
-    msr_sequence(tmp_path, "a01_s02_e03", "x0x")
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out/a01_s02_e03.mcap").write_bytes(b"mine")
-    with pytest.raises(OSError, match="already exists: name another file, or remove the existing file"):
-        import_msr_action3d(tmp_path, tmp_path / "out", lambda done, total: None)
-    assert (tmp_path / "out/a01_s02_e03.mcap").read_bytes() == b"mine"
-
-
 def test_a_damaged_file_stops_the_import_and_is_named(tmp_path: Path) -> None:
     msr_sequence(tmp_path, "a01_s01_e01", "x")
     (tmp_path / "a01_s01_e02_skeleton3D.txt").write_text("1 2 3\n")

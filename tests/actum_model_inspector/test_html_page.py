@@ -19,7 +19,7 @@ def shown(maps: ModelMaps, segments: list[AnsweredSegment], recording: Recording
     return page(maps.model, segments, evaluation, planned, files), planned
 
 
-def test_the_page_shows_every_picture_with_a_caption_and_nothing_from_elsewhere(
+def test_the_page_shows_every_picture_with_a_caption_links_and_what_the_model_is_and_nothing_from_elsewhere(
     maps: ModelMaps, segments: list[AnsweredSegment], recording: Recording
 ) -> None:
     written, planned = shown(maps, segments, recording)
@@ -28,20 +28,10 @@ def test_the_page_shows_every_picture_with_a_caption_and_nothing_from_elsewhere(
     assert "://" not in written
     assert "<script" not in written
 
-
-def test_links_within_the_page_lead_somewhere(
-    maps: ModelMaps, segments: list[AnsweredSegment], recording: Recording
-) -> None:
-    written, _ = shown(maps, segments, recording)
     targets = re.findall(r'href="#([^"]+)"', written)
     assert targets
     assert all(f'id="{target}"' in written for target in targets)
 
-
-def test_the_page_says_what_the_model_is_and_how_often_it_was_right(
-    maps: ModelMaps, segments: list[AnsweredSegment], recording: Recording
-) -> None:
-    written, _ = shown(maps, segments, recording)
     right = sum(segment.correct for segment in segments)
     assert maps.model.id in written
     assert "Tried on 3 segments." in written

@@ -102,25 +102,20 @@ def test_a_still_object_does_not_drift_while_covered() -> None:
     assert covered.position_m == seen.position_m
 
 
-def test_one_measurement_far_off_is_not_believed_but_two_are() -> None:
+@pytest.mark.parametrize(("second_m", "believed_m"), [((0.6, 0.0), 0.6), ((-0.6, 0.3), 0.0)])
+def test_one_measurement_far_off_is_not_believed_but_two_are_unless_they_contradict_each_other(
+    second_m: tuple[float, float], believed_m: float
+) -> None:
     tracks = Tracks(MEMORY_NS)
     for i in range(10):
         tracks.update(stamp(i), [measured(pose([0.0, 0.0, 1.5]))])
     assert tracks.update(stamp(10), [outlier := measured(pose([0.6, 0.0, 1.5]))]) == [outlier]
     (doubted,) = tracks.listed(stamp(10))
     assert (doubted.seen, doubted.position_m[0]) == (False, pytest.approx(0.0, abs=0.001))
-    assert tracks.update(stamp(11), [measured(pose([0.6, 0.0, 1.5]))]) == []
-    assert tracks.listed(stamp(11))[0].position_m[0] == pytest.approx(0.6)
-
-
-def test_two_that_contradict_each_other_are_not_believed_either() -> None:
-    tracks = Tracks(MEMORY_NS)
-    for i in range(10):
-        tracks.update(stamp(i), [measured(pose([0.0, 0.0, 1.5]))])
-    assert tracks.update(stamp(10), [outlier := measured(pose([0.6, 0.0, 1.5]))]) == [outlier]
-    assert tracks.update(stamp(11), [outlier := measured(pose([-0.6, 0.3, 1.5]))]) == [outlier]
-    assert tracks.update(stamp(12), [measured(pose([0.0, 0.0, 1.5]))]) == []
-    assert tracks.listed(stamp(12))[0].position_m[0] == pytest.approx(0.0, abs=0.001)
+    agrees = believed_m == second_m[0]
+    assert tracks.update(stamp(11), [second := measured(pose([*second_m, 1.5]))]) == ([] if agrees else [second])
+    assert tracks.update(stamp(12), [measured(pose([believed_m, 0.0, 1.5]))]) == []
+    assert tracks.listed(stamp(12))[0].position_m[0] == pytest.approx(believed_m, abs=0.001)
 
 
 def test_an_object_rejoins_at_once_wherever_it_comes_back() -> None:

@@ -27,31 +27,34 @@ def put(node: PosePreprocessor, stamp_ns: int, joints: Array) -> Posture:
     return posture
 
 
+@pytest.fixture
+def node() -> PosePreprocessor:
+    """A preprocessor that has seen the walker once."""
+    made = PosePreprocessor(PoseSettings.defaults())
+    put(made, 0, walking(0))
+    return made
+
+
 @pytest.mark.parametrize("lost", [("right_hand",), ("torso",), ("neck", "left_hip", "right_shoulder"), JOINTS[1:]])
-def test_a_walkers_lost_joints_walk_on(lost: tuple[str, ...]) -> None:
-    """However many: a single joint that is still there tells where the body went."""
-    whole, partial = PosePreprocessor(PoseSettings.defaults()), PosePreprocessor(PoseSettings.defaults())
-    for node in (whole, partial):
-        put(node, 0, walking(0))
+def test_a_walkers_lost_joints_walk_on(node: PosePreprocessor, lost: tuple[str, ...]) -> None:
+    """However many: a single joint that is still there shows where the body went."""
+    whole = PosePreprocessor(PoseSettings.defaults())
+    put(whole, 0, walking(0))
     expected = put(whole, FRAME_NS, walking(1))
-    found = put(partial, FRAME_NS, lacking(walking(1), *lost))
+    found = put(node, FRAME_NS, lacking(walking(1), *lost))
     assert found.valid
     for field in ("joints", "upright"):
         np.testing.assert_allclose(getattr(found, field), getattr(expected, field), atol=1e-9)
 
 
-def test_what_was_not_seen_is_not_told_as_measured_but_for_the_trunk() -> None:
-    node = PosePreprocessor(PoseSettings.defaults())
-    put(node, 0, walking(0))
+def test_what_was_not_seen_is_not_told_as_measured_but_for_the_trunk(node: PosePreprocessor) -> None:
     found = put(node, FRAME_NS, lacking(walking(1), "right_hand", "torso", "neck"))
     assert found.joints_m is not None
     assert [JOINTS[index] for index, joint in enumerate(found.joints_m) if joint is None] == ["right_hand"]
 
 
 @pytest.mark.parametrize(("gap_ns", "bridged"), [(BRIDGED_NS, True), (BRIDGED_NS + 1, False)])
-def test_a_joint_is_bridged_no_longer_than_it_can_be_known(gap_ns: int, bridged: bool) -> None:
-    node = PosePreprocessor(PoseSettings.defaults())
-    put(node, 0, walking(0))
+def test_a_joint_is_bridged_no_longer_than_it_can_be_known(node: PosePreprocessor, gap_ns: int, bridged: bool) -> None:
     put(node, gap_ns // 2, lacking(walking(1), "right_hand"))
     found = put(node, gap_ns, lacking(walking(2), "right_hand"))
     assert found.upright is not None
@@ -60,9 +63,7 @@ def test_a_joint_is_bridged_no_longer_than_it_can_be_known(gap_ns: int, bridged:
     assert (lost.valid, lost.reason) == (False, "missing_joint: these joints are missing: torso")
 
 
-def test_one_persons_joints_are_not_anothers() -> None:
-    node = PosePreprocessor(PoseSettings.defaults())
-    put(node, 0, walking(0))
+def test_one_persons_joints_are_not_anothers(node: PosePreprocessor) -> None:
     other = skeleton(FRAME_NS, lacking(walking(1), "right_hand"))
     stranger = other.model_copy(update={"agents": [other.agents[0].model_copy(update={"agent": 2})]})
     (found,) = node.handle(stranger)
@@ -70,9 +71,7 @@ def test_one_persons_joints_are_not_anothers() -> None:
     assert found.upright[HAND] is None
 
 
-def test_an_absurd_frame_is_not_remembered() -> None:
-    node = PosePreprocessor(PoseSettings.defaults())
-    put(node, 0, walking(0))
+def test_an_absurd_frame_is_not_remembered(node: PosePreprocessor) -> None:
     absurd = walking(1)
     absurd[HAND] += 20.0
     assert not put(node, FRAME_NS, absurd).valid
@@ -82,8 +81,6 @@ def test_an_absurd_frame_is_not_remembered() -> None:
     np.testing.assert_allclose(found.joints[HAND], whole.joints[HAND], atol=1e-9)  # type: ignore[index]
 
 
-def test_what_is_bridged_is_still_named_in_the_state() -> None:
-    node = PosePreprocessor(PoseSettings.defaults())
-    put(node, 0, walking(0))
+def test_what_is_bridged_is_still_named_in_the_state(node: PosePreprocessor) -> None:
     put(node, FRAME_NS, lacking(walking(1), "right_hand"))
     assert node.counters.state == "running without right_hand"

@@ -126,6 +126,14 @@ def test_every_agent_has_a_posture_that_names_all_of_the_frame() -> None:
     assert [(posture.agent, posture.agents) for posture in two] == [(1, [1, 2]), (2, [1, 2])]
 
 
+@pytest.mark.parametrize("std_m", [0.15, None])
+def test_a_posture_has_the_depth_uncertainty_of_its_skeleton(std_m: float | None) -> None:
+    frame = skeleton(5, STANDING)
+    agents = [frame.agents[0].model_copy(update={"depth_std_m": std_m})]
+    [posture] = postures(frame.model_copy(update={"agents": agents}))
+    assert posture.depth_std_m == std_m
+
+
 def test_lost_frames_are_handed_on() -> None:
     frames = [frame for frame in reaches(10) if frame.seq not in (3, 4)]
     missed = {posture.stamp_ns // FRAME_NS: posture.missed for posture in postures(*frames)}

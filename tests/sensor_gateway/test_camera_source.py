@@ -23,6 +23,7 @@ from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.settings import Settings
 
 FRAME_NS = SECOND_NS // 20
+CALIBRATION = Calibration(image_size=(640, 480), K=K.ravel().tolist(), distortion=[0.0] * 5)
 Step = str | int | None
 """A picture with a person at so many decimetres to the right, "lost", "over", "frozen", "black", or none yet."""
 
@@ -125,8 +126,7 @@ def test_the_image_can_be_decoded_and_says_that_its_intrinsics_are_assumed() -> 
 
 
 def test_a_calibration_is_used_for_image_and_joints_alike() -> None:
-    calibration = Calibration(image_size=(640, 480), K=K.ravel().tolist(), distortion=[0.0] * 5)
-    image, skeleton = messages(World([3]), Optics(calibration=calibration))
+    image, skeleton = messages(World([3]), Optics(calibration=CALIBRATION))
     assert isinstance(image, Image)
     assert isinstance(skeleton, Skeleton)
     assert (image.K, image.intrinsics_assumed) == (K.ravel().tolist(), False)
@@ -137,9 +137,7 @@ def test_a_calibration_is_used_for_image_and_joints_alike() -> None:
 
 
 def test_images_of_another_size_than_was_calibrated_show_nothing() -> None:
-    calibration = Calibration(image_size=(1280, 720), K=K.ravel().tolist(), distortion=[0.0] * 5)
-    world = World([0])
-    source = world.source(Optics(calibration=calibration))
+    source = World([0]).source(Optics(calibration=CALIBRATION.model_copy(update={"image_size": (1280, 720)})))
     [skeleton] = [message for listed in source.frames() for message in listed]
     assert (skeleton.valid, skeleton.reason) == (False, "image_size_mismatch: 640x480, calibrated for 1280x720")
     assert source.counters.rejects == {"image_size_mismatch": 1}
@@ -148,10 +146,9 @@ def test_images_of_another_size_than_was_calibrated_show_nothing() -> None:
 def test_a_calibration_of_a_camera_beside_this_one_is_refused(tmp_path: Path) -> None:
     beside = np.eye(4)
     beside[0, 3] = 0.12
-    known = {"image_size": (640, 480), "K": K.ravel().tolist(), "distortion": [0.0] * 5}
     for name, transform in (("own", None), ("same", np.eye(4)), ("beside", beside)):
         listed = None if transform is None else transform.ravel().tolist()
-        Calibration.model_validate({**known, "skeleton_from_image": listed}).save(tmp_path / name)
+        CALIBRATION.model_copy(update={"skeleton_from_image": listed}).save(tmp_path / name)
         settings = Settings(source="camera", calibration=tmp_path / name)
         if name == "beside":
             with pytest.raises(CalibrationError, match="so it is the calibration of a marker camera: start that"):
@@ -162,8 +159,7 @@ def test_a_calibration_of_a_camera_beside_this_one_is_refused(tmp_path: Path) ->
 
 def test_info_tells_how_well_the_camera_is_known() -> None:
     assert "assumed: 60 degrees" in World().source().counters.details["calibration"]
-    calibration = Calibration(image_size=(640, 480), K=K.ravel().tolist(), distortion=[0.0] * 5)
-    assert World().source(Optics(calibration=calibration)).counters.details["calibration"] == calibration.id
+    assert World().source(Optics(calibration=CALIBRATION)).counters.details["calibration"] == CALIBRATION.id
 
 
 def test_a_lost_camera_is_told_at_once_and_tried_again_ever_later_until_it_is_back() -> None:

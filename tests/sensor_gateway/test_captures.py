@@ -16,9 +16,8 @@ from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices import webcam
 from sensor_gateway.devices.capture import CameraLostError, CaptureEndedError
 from sensor_gateway.devices.file_capture import FileCapture
-from sensor_gateway.devices.present_cameras import present_cameras
 from sensor_gateway.devices.video import VideoError, pictures_of
-from sensor_gateway.devices.webcam import LiveCapture
+from sensor_gateway.devices.webcam import LiveCapture, present_cameras
 
 TENTH_NS = SECOND_NS // 10
 
@@ -63,11 +62,13 @@ def test_frames_whose_times_a_file_does_not_tell_come_one_interval_apart(
     assert [picture.stamp_ns for picture in pictures_of(Path("a.h264"))] == [ms * 1_000_000 for ms in stamped_ms]
 
 
-def test_what_is_no_video_is_named(tmp_path: Path) -> None:
+def test_what_is_no_video_is_named_and_is_a_lost_camera(tmp_path: Path) -> None:
     path = tmp_path / "a.mp4"
     path.write_text("no video")
     with pytest.raises(VideoError, match=r"a\.mp4 is not a video"):
         list(pictures_of(path))
+    with pytest.raises(CameraLostError, match="not a video"):
+        capture_of(str(path), None).next(0.0)
 
 
 class Clock:
@@ -155,13 +156,6 @@ def test_a_file_that_is_there_is_played_and_all_else_is_a_device(tmp_path: Path)
     assert (played.live, other.live) == (False, True)
     played.close()
     other.close()
-
-
-def test_a_file_that_is_no_video_is_a_lost_camera(tmp_path: Path) -> None:
-    path = tmp_path / "a.mp4"
-    path.write_text("no video")
-    with pytest.raises(CameraLostError, match="not a video"):
-        capture_of(str(path), None).next(0.0)
 
 
 def test_a_device_at_whose_opening_opencv_fails_is_lost_and_says_why(monkeypatch: pytest.MonkeyPatch) -> None:

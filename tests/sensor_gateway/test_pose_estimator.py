@@ -16,6 +16,7 @@ from actum.node import SECOND_NS, Counters
 from actum.skeletons import INDEX
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.video import pictures_of
+from sensor_gateway.lens import Lens
 from sensor_gateway.optics import Optics
 from sensor_gateway.people.pose_estimator import BLANK, PoseEstimator, PoseModelError
 from sensor_gateway.perceiver import Perceiver
@@ -163,8 +164,7 @@ def test_two_people_are_two_agents(data: Path, pose_model: Path) -> None:
 @pytest.mark.pose_model
 def test_the_joints_lie_where_the_person_is_in_the_picture(data: Path, pose_model: Path) -> None:
     skeleton = seen(data / RAISED_HAND, pose_model, Optics())[0]
-    lens = Optics().lens(640, 480)
-    assert lens is not None
+    lens = Lens.of_field_of_view(640, 480, 60.0)
     joints = np.array([place for place in skeleton.agents[0].joints if place is not None])
     pixels = cv2.projectPoints(joints, np.zeros(3), np.zeros(3), lens.matrix, lens.distortion)[0].reshape(-1, 2)
     assert pixels.min(axis=0) == pytest.approx([195, 125], abs=25)

@@ -7,7 +7,7 @@ import pytest
 
 from camera_videos import write_video
 from sensor_gateway.settings import Settings
-from sensor_gateway.source_description import description
+from sensor_gateway.sources import description
 
 
 @pytest.mark.parametrize(

@@ -165,7 +165,11 @@ def _step(
     residual = levels - black - contrast * blurred
     weight = 1 / (1 + (residual / (CAUCHY_SCALE * contrast)) ** 2)
     jacobian = np.empty((len(levels), directions.shape[2] + 3, levels.shape[1]))
-    gradient = contrast[..., None] * _slopes_per_px(slopes, corners_px)
+    first, second, third, fourth = np.moveaxis(corners_px, 1, 0)
+    right, down = (second - first + third - fourth) / 2, (fourth - first + third - second) / 2
+    image_from_unit = np.stack([right, down], axis=1)
+    per_px: Array = np.linalg.inv(image_from_unit) @ slopes
+    gradient = contrast[..., None] * per_px
     by_corner = (_corner_weights(across)[:, None] * gradient[:, None]).reshape(len(levels), 8, -1)
     np.matmul(np.swapaxes(directions, 1, 2), by_corner, out=jacobian[:, :-3])
     jacobian[:, -3], jacobian[:, -2], jacobian[:, -1] = -contrast * by_blur, -1.0, -blurred
@@ -220,12 +224,3 @@ def _blurred(white: Array, blur: Array, across: int) -> tuple[Array, Array, Arra
     by_blur = by_blur + wider @ white @ turned[0]
     slopes = across * np.stack([along.reshape(flat), down.reshape(flat)], axis=1)
     return blurred.reshape(flat), slopes, by_blur.reshape(flat)
-
-
-def _slopes_per_px(slopes: Array, corners_px: Array) -> Array:
-    """Turn slopes (n, 2, m) along the unit square's sides into slopes along the image's axes, per pixel (n, 2, m)."""
-    first, second, third, fourth = np.moveaxis(corners_px, 1, 0)
-    right, down = (second - first + third - fourth) / 2, (fourth - first + third - second) / 2
-    image_from_unit = np.stack([right, down], axis=1)
-    per_px: Array = np.linalg.inv(image_from_unit) @ slopes
-    return per_px

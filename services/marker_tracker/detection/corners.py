@@ -105,23 +105,6 @@ def _by_edges(pixels: Pixels, corners: Array, fits: int) -> Array:
     middle = (corners[:, NEXT] + corners) / 2
     centres = middle[:, :, None] + (s * length[..., None] / 2)[..., None] * along[:, :, None]
     half_length = np.clip(length / SMALLEST_CELLS / 2, MIN_REACH_PX, MAX_REACH_PX)
-    offset, weight = _edge_offsets(pixels, centres, outward, half_length)
-    fitted = _fitted(s, offset, weight, length, fits)
-    return _intersections(middle, along, outward, length, fitted)
-
-
-def _edge_offsets(pixels: Pixels, centres: Array, outward: Array, half_length: Array) -> tuple[Array, Array]:
-    """Locate the edge in each profile, as the centroid of the squared rise from inside to outside.
-
-    Args:
-        pixels: (height, width).
-        centres: (n, 4, PROFILES, 2), the centres of the profiles.
-        outward: (n, 4, 2), unit vectors.
-        half_length: (n, 4), half lengths of the profiles in pixels.
-
-    Returns:
-        Offsets outwards in pixels and weights, both (n, 4, PROFILES).
-    """
     t = half_length[..., None] * ACROSS_SIDE
     points = (centres[..., None, :] + t[:, :, None, :, None] * outward[:, :, None, None]).astype(np.float32)
     x, y = np.moveaxis(points.reshape(-1, PROFILE_SAMPLES, 2), -1, 0)
@@ -132,7 +115,9 @@ def _edge_offsets(pixels: Pixels, centres: Array, outward: Array, half_length: A
     between = (t[..., 1:] + t[..., :-1]) / 2
     offset = np.einsum("nskt,nst->nsk", rise, between) / np.maximum(total, 1e-9)
     contrast = levels[..., -1] - levels[..., 0]
-    return offset, np.where(contrast > 0, np.minimum(contrast, MAX_CONTRAST_WEIGHT), 0.0)
+    weight = np.where(contrast > 0, np.minimum(contrast, MAX_CONTRAST_WEIGHT), 0.0)
+    fitted = _fitted(s, offset, weight, length, fits)
+    return _intersections(middle, along, outward, length, fitted)
 
 
 def _fitted(s: Array, offset: Array, weight: Array, length: Array, fits: int) -> Array:

@@ -71,7 +71,7 @@ class MarkerDetector:
         return _distinct(markers)
 
     def _is_complete(self, markers: Sequence[Marker]) -> bool:
-        """Tell whether every wanted marker is found."""
+        """Return whether every wanted marker is found."""
         return not self._all_wanted and self._wanted <= {marker.key for marker in markers}
 
     def _read_near(self, pixels: Pixels, in_place: Sequence[Marker]) -> list[Marker]:

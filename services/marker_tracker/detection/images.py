@@ -37,7 +37,17 @@ def gray(image: Image) -> Pixels:
             "image_too_large",
             f"the image has {image.width}x{image.height} pixels; at most {LARGEST_PIXELS} pixels in all are allowed",
         )
-    return _from_jpeg(image) if image.format == "jpeg" else _from_bgr(image)
+    if image.format == "jpeg":
+        return _from_jpeg(image)
+    expected = image.width * image.height * 3
+    if len(image.data) != expected:
+        raise UnusableImageError(
+            "image_size_mismatch",
+            f"the image has {len(image.data)} bytes; {image.width}x{image.height} pixels in the format bgr8 need "
+            f"{expected} bytes",
+        )
+    pixels = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
+    return cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
 
 
 def refuse_black(pixels: Pixels) -> None:
@@ -93,15 +103,3 @@ def _jpeg_size(data: bytes) -> tuple[int, int]:
             "undecodable_image", f"the JPEG of {len(data)} bytes is damaged: its header gives no image size"
         )
     return width, height
-
-
-def _from_bgr(image: Image) -> Pixels:
-    expected = image.width * image.height * 3
-    if len(image.data) != expected:
-        raise UnusableImageError(
-            "image_size_mismatch",
-            f"the image has {len(image.data)} bytes; {image.width}x{image.height} pixels in the format bgr8 need "
-            f"{expected} bytes",
-        )
-    pixels = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
-    return cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)

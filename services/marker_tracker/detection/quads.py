@@ -59,7 +59,13 @@ class QuadDetector:
     def __init__(self, families: Sequence[Family], wanted: Sequence[Collection[int]]) -> None:
         """Search each family for its wanted ids, or for all ids where none are wanted or the family is small."""
         dictionaries = [_searched(family, ids) for family, ids in zip(families, wanted, strict=True)]
-        self._detector = cv2.aruco.ArucoDetector(dictionaries, _parameters())
+        parameters = cv2.aruco.DetectorParameters()
+        least_px, greatest_px, step_px = THRESHOLD_WINDOWS_PX
+        parameters.adaptiveThreshWinSizeMin = least_px
+        parameters.adaptiveThreshWinSizeMax = greatest_px
+        parameters.adaptiveThreshWinSizeStep = step_px
+        parameters.minMarkerDistanceRate = MIN_QUAD_DISTANCE
+        self._detector = cv2.aruco.ArucoDetector(dictionaries, parameters)
 
     def find(self, pixels: Pixels, known: Array) -> Quads:
         """Find the quadrilaterals in a grey image (height, width), given the corners (k, 4, 2) of its known markers."""
@@ -70,7 +76,7 @@ class QuadDetector:
 
 
 def within(squares: Array, others: Array) -> Mask:
-    """Tell which squares (n, 4, 2) have their centre inside one of the others (m, 4, 2): a mask (n,)."""
+    """Find which squares (n, 4, 2) have their centre inside one of the others (m, 4, 2): a mask (n,)."""
     outlines = others.astype(np.float32)
     centres = squares.mean(axis=1)
     inside = [
@@ -94,16 +100,6 @@ def rimmed_squares(pixels: Pixels, quads: Quads) -> Array:
     rimmed = free[_has_black_rim(pixels, free)] if len(free) else free
     largest: Array = rimmed[np.argsort([-cv2.contourArea(quad.astype(np.float32)) for quad in rimmed])]
     return largest[:MAX_REJECTED_READ]
-
-
-def _parameters() -> Any:
-    parameters = cv2.aruco.DetectorParameters()
-    least_px, greatest_px, step_px = THRESHOLD_WINDOWS_PX
-    parameters.adaptiveThreshWinSizeMin = least_px
-    parameters.adaptiveThreshWinSizeMax = greatest_px
-    parameters.adaptiveThreshWinSizeStep = step_px
-    parameters.minMarkerDistanceRate = MIN_QUAD_DISTANCE
-    return parameters
 
 
 def _searched(family: Family, ids: Collection[int]) -> Any:
@@ -139,7 +135,7 @@ def _inner_square(pixels: Pixels, corners_px: Array) -> Array | None:
 
 
 def _has_black_rim(pixels: Pixels, corners_px: Array) -> Mask:
-    """Tell which squares (n, 4, 2) are darker just inside than just outside, on at least three sides: a mask (n,).
+    """Find which squares (n, 4, 2) are darker just inside than just outside, on at least three sides: a mask (n,).
 
     Rough corners may miss a side of a small square by as much as the black border is wide.
     """

@@ -32,7 +32,7 @@ LEFT_BEHIND_SIDES = 0.75
 MAX_TRACKED = 6
 """Occluders per image: each takes a millisecond or two."""
 STILL_NS = SECOND_NS // 20
-"""Shortest time in nanoseconds between the two images that tell whether an occluder rests."""
+"""Shortest time in nanoseconds between the two images by which an occluder is judged to rest."""
 STILL_SIDES = 0.06
 """Motion in sides between those two images up to which an occluder rests: half a centimetre."""
 MIN_STILL_CORRELATION = 0.9
@@ -109,7 +109,12 @@ class OccluderTracker:
         """Infer hidden markers from their occluders in a grey image (height, width), given its visible markers."""
         detected = {marker.key: self._last_detection(stamp_ns, marker) for marker in visible}
         missing = [
-            (key, last) for key, last in self._last.items() if key not in detected and not _lies_under(last, visible)
+            (key, last)
+            for key, last in self._last.items()
+            if key not in detected
+            and not any(
+                abs(complex(*each.centre_px) - last.centre_px) < OVERLAP_SIDES * last.marker.side_px for each in visible
+            )
         ]
         hidden = dict(sorted(missing, key=lambda item: item[0] not in self._occluders)[:MAX_TRACKED])
         tracked = {key: _tracked(stamp_ns, pixels, last, self._occluders.get(key)) for key, last in hidden.items()}
@@ -125,11 +130,6 @@ class OccluderTracker:
         moved_px = float(np.linalg.norm(marker.centre_px - before.marker.centre_px))
         most_px = MAX_RESTING_SIDES_PER_S * marker.side_px * (stamp_ns - before.stamp_ns) / SECOND_NS
         return LastDetection(marker, stamp_ns, moved_px <= most_px)
-
-
-def _lies_under(last: LastDetection, visible: Sequence[Marker]) -> bool:
-    """Tell whether another marker covers a marker's last position: then an object lies on it, and no hand."""
-    return any(abs(complex(*each.centre_px) - last.centre_px) < OVERLAP_SIDES * last.marker.side_px for each in visible)
 
 
 def _tracked(stamp_ns: int, pixels: Pixels, last: LastDetection, occluder: Occluder | None) -> Occluder | None:
@@ -176,7 +176,7 @@ def _registered_again(stamp_ns: int, pixels: Pixels, last: LastDetection, occlud
 
 
 def _is_within(sides: float, place: Similarity, last: LastDetection) -> bool:
-    """Tell whether a place is within a number of sides of the marker's last position."""
+    """Return whether a place is within a number of sides of the marker's last position."""
     return abs(place.centre_px - last.centre_px) <= sides * last.marker.side_px
 
 

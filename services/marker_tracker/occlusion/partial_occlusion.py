@@ -39,7 +39,7 @@ USUAL_TIME_CONSTANT_S = 3.0
 MIN_RIGHT_CELLS = 0.85
 """Least share of the code's cells that must be read correctly: by chance half of them are."""
 MAX_COVERED = 0.2
-"""Largest covered share of a followed marker: the visible part of one covered further does not tell its scale."""
+"""Largest covered share of a followed marker: with a larger one the visible part does not determine the scale."""
 MAX_GROWTH = 0.15
 """Largest relative change of a marker's side since its last view: no hand moves an object to the camera faster."""
 
@@ -85,7 +85,12 @@ class PartialOcclusionTracker:
         followed = [
             marker
             for last in missing
-            if (marker := _follow(stamp_ns, pixels, last)) and not _is_taken(marker, detected)
+            if (marker := _follow(stamp_ns, pixels, last))
+            and not any(
+                each.key != marker.key
+                and math.dist(each.centre_px, marker.centre_px) < SAME_PLACE_SIDES * marker.side_px
+                for each in detected
+            )
         ]
         replaced = {marker.key for marker in followed}
         markers = [*followed, *(marker for marker in detected if marker.key not in replaced)]
@@ -138,14 +143,6 @@ def _follow(stamp_ns: int, pixels: Pixels, last: LastView) -> Marker | None:
     moved = Marker(marker.family, marker.id, corners_px, int(wrong.sum()), float(aligned.covered[0]))
     is_visible = wrong[1:-1, 1:-1].mean() <= 1 - MIN_RIGHT_CELLS and moved.covered <= MAX_COVERED
     return moved if is_visible and abs(moved.side_px / marker.side_px - 1) <= MAX_GROWTH else None
-
-
-def _is_taken(marker: Marker, detected: Sequence[Marker]) -> bool:
-    """Tell whether another marker is detected in the followed marker's place."""
-    return any(
-        each.key != marker.key and math.dist(each.centre_px, marker.centre_px) < SAME_PLACE_SIDES * marker.side_px
-        for each in detected
-    )
 
 
 def _box(marker: Marker, extra_px: float) -> Box:

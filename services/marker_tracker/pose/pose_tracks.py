@@ -11,7 +11,7 @@ from actum.geometry import angle_between_rad, quaternion_xyzw
 from actum.messages import TrackedObject
 from actum.node import SECOND_NS
 from marker_tracker.pose.disambiguation import PoseDisambiguation
-from marker_tracker.pose.poses import Measurement, Pose
+from marker_tracker.pose.poses import Measurement
 
 RESTART_S = 0.5
 """Seconds out of sight after which a track starts anew: by then the object may be anywhere."""
@@ -67,7 +67,10 @@ class Track:
             self._held_back = stamp_ns, MotionEstimate.initial(position_m, measurement.noise_m2, INITIAL_SPEED_STD_MPS)
             return False
         self._motion = motion
-        self._rotation = _smoothed(self._rotation, pose)
+        assert self._rotation is not None
+        measured = pose.camera_from_object[:3, :3]
+        angle_rad = angle_between_rad(self._rotation, measured)
+        self._rotation = interpolated_rotation(self._rotation, measured, angle_rad / (angle_rad + ROTATION_NOISE_RAD))
         self._accept(stamp_ns, measurement)
         return True
 
@@ -83,9 +86,12 @@ class Track:
 
         While it is out of sight, its confidence falls to 0 within `memory_ns`.
         """
-        if stamp_ns == self.stamp_ns:
-            return self._described_measured()
         assert self._motion is not None
+        if stamp_ns == self.stamp_ns:
+            velocity_mps = self._motion.velocity_mps.tolist() if self._measured > 1 else None
+            return self._described(
+                self._motion.position_m, velocity_mps, self._confidence, seen=not self._hidden, followed=self._hidden
+            )
         seconds = (stamp_ns - self.stamp_ns) / SECOND_NS
         slowing_s = SLOWING_TIME_CONSTANT_S
         moved_s = slowing_s * (1 - np.exp(-min(seconds, PREDICTED_S) / slowing_s))
@@ -96,12 +102,6 @@ class Track:
             self._confidence * (1.0 - (stamp_ns - self.stamp_ns) / memory_ns),
             predicted=seconds <= PREDICTED_S,
         )
-
-    def _described_measured(self) -> TrackedObject:
-        assert self._motion is not None
-        velocity_mps = self._motion.velocity_mps.tolist() if self._measured > 1 else None
-        seen, followed = not self._hidden, self._hidden
-        return self._described(self._motion.position_m, velocity_mps, self._confidence, seen=seen, followed=followed)
 
     def _restart(self, stamp_ns: int, measurement: Measurement) -> bool:
         """Start anew at a measurement, unless its object is hidden: then its occluder was tracked wrongly."""
@@ -190,11 +190,3 @@ def interpolated_rotation(start: Array, end: Array, share: float) -> Array:
     turn = cv2.Rodrigues(np.ascontiguousarray(start.T @ end))[0]
     rotation: Array = start @ cv2.Rodrigues(share * turn)[0]
     return rotation
-
-
-def _smoothed(rotation: Array | None, pose: Pose) -> Array:
-    """Smooth a rotation (3, 3) with a measured pose's, which weighs more the larger the angle between them is."""
-    assert rotation is not None
-    measured = pose.camera_from_object[:3, :3]
-    angle_rad = angle_between_rad(rotation, measured)
-    return interpolated_rotation(rotation, measured, angle_rad / (angle_rad + ROTATION_NOISE_RAD))

@@ -212,7 +212,7 @@ def _error_px(points_m: Array, corners_px: Array, camera: CameraModel, rotation:
 
 
 def _is_possible(error_px: float, least_px: float) -> bool:
-    """Tell whether a solution remains possible beside the best one."""
+    """Return whether a solution remains possible beside the best one."""
     return error_px <= max(RIVAL_ERROR_RATIO * least_px, least_px + RIVAL_ERROR_PX)
 
 

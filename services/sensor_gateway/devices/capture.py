@@ -6,7 +6,7 @@ from sensor_gateway.captured_picture import Picture
 
 
 class CameraLostError(Exception):
-    """The camera gives no more pictures; the message tells why."""
+    """The camera gives no more pictures; the message gives the reason."""
 
 
 class CaptureEndedError(Exception):

@@ -136,28 +136,22 @@ class Users:
     def agents(self, users: Sequence[Any]) -> list[Agent]:
         """Return the agents of the users whose skeleton is tracked."""
         for user in users:
-            self._update_user(user)
+            if user.is_lost():
+                self._agents.pop(user.id, None)
+                self._sides_swapped.pop(user.id, None)
+            elif user.id not in self._agents:
+                self._agents[user.id], self._next = self._next, self._next + 1
+                self._follow(user.id)
         return [self._agent(user) for user in users if user.id in self._agents and _is_tracked(user)]
-
-    def _update_user(self, user: Any) -> None:
-        if user.is_lost():
-            self._agents.pop(user.id, None)
-            self._sides_swapped.pop(user.id, None)
-        elif user.id not in self._agents:
-            self._agents[user.id], self._next = self._next, self._next + 1
-            self._follow(user.id)
 
     def _agent(self, user: Any) -> Agent:
         joints: list[Joint] = to_actum([_in_metres(joint.position) for joint in user.skeleton.joints], "nite2-15")
         confidence = to_actum([float(joint.positionConfidence) for joint in user.skeleton.joints], "nite2-15")
-        if self._has_swapped_sides(user.id, joints):
-            joints, confidence = [joints[i] for i in OTHER_SIDE], [confidence[i] for i in OTHER_SIDE]
-        return Agent(agent=self._agents[user.id], joints=known_joints(joints, confidence), confidence=confidence)
-
-    def _has_swapped_sides(self, user: int, joints: list[Joint]) -> bool:
         left, right = joints[LEFT_SHOULDER], joints[RIGHT_SHOULDER]
         assert left is not None and right is not None
-        return self._sides_swapped.setdefault(user, left[0] < right[0])
+        if self._sides_swapped.setdefault(user.id, left[0] < right[0]):
+            joints, confidence = [joints[i] for i in OTHER_SIDE], [confidence[i] for i in OTHER_SIDE]
+        return Agent(agent=self._agents[user.id], joints=known_joints(joints, confidence), confidence=confidence)
 
 
 def _is_tracked(user: Any) -> bool:

@@ -49,8 +49,8 @@ class OpenNi2Capture:
         try:
             self._streams = self._streams or self._opened()
             has_frame, picture = self._streams.next(patience_s, self._clock)
-            if not has_frame:
-                self._check_connected(self._streams.uri)
+            if not has_frame and self._streams.uri not in self._openni2.Device.enumerate_uris():
+                raise CameraLostError(f"{self._streams.uri.decode(errors='replace')} was unplugged")
         except ERRORS as error:
             raise CameraLostError(f"OpenNI says: {error_text(error)}") from None
         if picture is None:
@@ -70,10 +70,6 @@ class OpenNi2Capture:
             raise CameraLostError("no camera that OpenNI 2 supports is connected")
         device = self._openni2.Device(None)
         return Streams(self._openni2, device, self._size, self._field_of_view_deg)
-
-    def _check_connected(self, uri: bytes) -> None:
-        if uri not in self._openni2.Device.enumerate_uris():
-            raise CameraLostError(f"{uri.decode(errors='replace')} was unplugged")
 
 
 def recorded_pictures(path: Path, start_ns: int, field_of_view_deg: float = 60.0) -> Generator[Picture, None, None]:

@@ -34,7 +34,16 @@ def library() -> Any:
             "the Python bindings of OpenNI 2 do not work on Python 3.13 or newer; use Python 3.11 or 3.12"
         ) from None
     if not openni2.is_initialized():
-        _start(openni2)
+        from openni.utils import InitializationError, OpenNIError
+
+        # the folder that the environment names, or else the system's, which the bindings miss
+        folders = [os.environ[name] for name in FOLDERS if name in os.environ]
+        try:
+            if not folders and not openni2.loaded_dll_directory:
+                openni2.loaded_dll_directory = _load(openni2.c_api)
+            openni2.initialize(folders)
+        except (InitializationError, OpenNIError) as error:
+            raise OpenNiError(error_text(error)) from None
     return openni2
 
 
@@ -54,19 +63,6 @@ def error_text(error: Exception) -> str:
 
 
 ERRORS = _errors()
-
-
-def _start(openni2: Any) -> None:
-    """Start the library from the folder that the environment names, or else the system's, which the bindings miss."""
-    from openni.utils import InitializationError, OpenNIError
-
-    folders = [os.environ[name] for name in FOLDERS if name in os.environ]
-    try:
-        if not folders and not openni2.loaded_dll_directory:
-            openni2.loaded_dll_directory = _load(openni2.c_api)
-        openni2.initialize(folders)
-    except (InitializationError, OpenNIError) as error:
-        raise OpenNiError(error_text(error)) from None
 
 
 def _load(c_api: Any) -> str:

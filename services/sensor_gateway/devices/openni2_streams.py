@@ -82,7 +82,18 @@ class Streams:
             return False, None
         frame = stream.read_frame()
         frames = self._depths if stream is self._depth else self._colors
-        frames.append((frame.timestamp, self._pixels(stream, frame)))
+        rows = np.frombuffer(frame.get_buffer_as_uint8(), np.uint8).reshape(frame.height, frame.stride)
+        pixels: NDArray[Any]
+        if stream is self._depth:
+            pixels = rows[:, : 2 * frame.width].view(np.uint16)
+        elif self._is(stream, self._openni2.PIXEL_FORMAT_RGB888):
+            pixels = rows[:, : 3 * frame.width].reshape(frame.height, frame.width, 3)
+        else:
+            raise CameraLostError(
+                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}; only RGB888 is "
+                "supported"
+            )
+        frames.append((frame.timestamp, (pixels[:, ::-1] if stream in self._mirrored else pixels).copy()))
         frame.close()
         return True, self._together(clock)
 
@@ -124,21 +135,6 @@ class Streams:
                 "the camera driver does not align depth images with colour images, so thin limbs may get the depth of "
                 "the background"
             )
-
-    def _pixels(self, stream: Any, frame: Any) -> NDArray[Any]:
-        """Copy a frame's pixels, unmirrored: (height, width) of depth, (height, width, 3) of colour."""
-        rows = np.frombuffer(frame.get_buffer_as_uint8(), np.uint8).reshape(frame.height, frame.stride)
-        pixels: NDArray[Any]
-        if stream is self._depth:
-            pixels = rows[:, : 2 * frame.width].view(np.uint16)
-        elif self._is(stream, self._openni2.PIXEL_FORMAT_RGB888):
-            pixels = rows[:, : 3 * frame.width].reshape(frame.height, frame.width, 3)
-        else:
-            raise CameraLostError(
-                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}; only RGB888 is "
-                "supported"
-            )
-        return (pixels[:, ::-1] if stream in self._mirrored else pixels).copy()
 
     def _is(self, stream: Any, pixel_format: Any) -> bool:
         return bool(stream.video_mode.pixelFormat == pixel_format)

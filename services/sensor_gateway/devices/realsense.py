@@ -39,7 +39,7 @@ TO_BGR = {
 
 
 class RealSenseError(ValueError):
-    """The library is not installed; the message tells what is missing and what to do."""
+    """The library is not installed; the message names what is missing and the remedy."""
 
 
 def library() -> Any:
@@ -85,7 +85,11 @@ class RealSenseCapture:
                 self._pipeline = self._started()
             has_frames, frames = self._pipeline.try_wait_for_frames(round(1000 * patience_s))
             if not has_frames:
-                self._check_connected()
+                numbers = [
+                    device.get_info(self._rs.camera_info.serial_number) for device in self._context.query_devices()
+                ]
+                if self._serial not in numbers:
+                    raise CameraLostError(f"the RealSense camera with serial number {self._serial} was unplugged")
             picture = self._aligner.picture(frames, self._stamp_ns) if has_frames else None
         except RuntimeError as error:
             raise CameraLostError(f"librealsense says: {error}") from None
@@ -124,11 +128,6 @@ class RealSenseCapture:
             config.enable_stream(rs.stream.color, rs.format.bgr8)
             config.enable_stream(rs.stream.depth, rs.format.z16)
         return config
-
-    def _check_connected(self) -> None:
-        numbers = [device.get_info(self._rs.camera_info.serial_number) for device in self._context.query_devices()]
-        if self._serial not in numbers:
-            raise CameraLostError(f"the RealSense camera with serial number {self._serial} was unplugged")
 
     def _stamp_ns(self, frame: Any) -> int:
         stamp_ns = _device_ns(frame)

@@ -16,7 +16,7 @@ SUFFIXES = frozenset({".avi", ".m4v", ".mkv", ".mov", ".mp4", ".mpeg", ".mpg", "
 
 
 class VideoError(ValueError):
-    """A file holds no readable pictures; the message tells which file and what to do."""
+    """A file holds no readable pictures; the message names the file and the remedy."""
 
 
 def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]:
@@ -36,7 +36,8 @@ def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]
             first_ns = at_ns if first_ns is None else first_ns
             stamp_ns = start_ns + at_ns - first_ns
             if newest_ns is not None and stamp_ns <= newest_ns:
-                stamp_ns = newest_ns + _frame_interval_ns(capture)
+                rate_hz = capture.get(cv2.CAP_PROP_FPS)
+                stamp_ns = newest_ns + round(SECOND_NS / (rate_hz if rate_hz > 0 else USUAL_RATE_HZ))
             newest_ns = stamp_ns
             yield Picture(grabbed[1].astype(np.uint8, copy=False), stamp_ns)
         if first_ns is None:
@@ -52,9 +53,3 @@ def frame_count(path: Path) -> int:
         return max(0, round(capture.get(cv2.CAP_PROP_FRAME_COUNT)))
     finally:
         capture.release()
-
-
-def _frame_interval_ns(capture: cv2.VideoCapture) -> int:
-    """Return the time between two frames at the file's frame rate, or else at the usual one."""
-    rate_hz = capture.get(cv2.CAP_PROP_FPS)
-    return round(SECOND_NS / (rate_hz if rate_hz > 0 else USUAL_RATE_HZ))

@@ -46,13 +46,10 @@ class Watch:
         lit = not is_black(picture.image_bgr)
         self._lit_ns = picture.stamp_ns if lit or self._lit_ns is None else self._lit_ns
         self._lit_or_opened_ns = picture.stamp_ns if lit or self._lit_or_opened_ns is None else self._lit_or_opened_ns
-        return self._complaint(picture.stamp_ns, self._lit_ns, self._lit_or_opened_ns)
-
-    def _complaint(self, stamp_ns: int, lit_ns: int, lit_or_opened_ns: int) -> str | None:
-        if stamp_ns - lit_ns >= BLACK_NS:
-            self.lost = stamp_ns - lit_or_opened_ns >= BLACK_LOST_NS
+        if picture.stamp_ns - self._lit_ns >= BLACK_NS:
+            self.lost = picture.stamp_ns - self._lit_or_opened_ns >= BLACK_LOST_NS
             return "black: nothing can be seen; is the lens covered?"
-        self.lost = stamp_ns - self._changed_ns >= FROZEN_NS
+        self.lost = picture.stamp_ns - self._changed_ns >= FROZEN_NS
         return f"frozen: the picture has not changed for {FROZEN_NS / SECOND_NS:g} s" if self.lost else None
 
 

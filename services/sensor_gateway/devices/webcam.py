@@ -1,6 +1,8 @@
 """A camera or a network stream that OpenCV reads; only the newest picture is kept."""
 
+import sys
 import threading
+from pathlib import Path
 
 import cv2
 import numpy as np
@@ -8,13 +10,14 @@ import numpy as np
 from actum import steady_clock
 from sensor_gateway.captured_picture import Picture
 from sensor_gateway.devices.capture import CameraLostError
-from sensor_gateway.devices.present_cameras import present_cameras
 from sensor_gateway.devices.silence import OPENING_S, Silence
 
 CLOSING_S = 0.5
 """Longest wait of `close` for the reading thread: a driver that hangs must not block the service."""
 COMPRESSED = cv2.VideoWriter.fourcc(*"MJPG")
 """Pixel format that is requested with a size: few devices give large uncompressed images at more than some Hz."""
+LISTED = Path("/sys/class/video4linux")
+"""Linux's folder with a folder for each video device: its name, and its index among those of one camera."""
 
 
 class LiveCapture:
@@ -77,13 +80,16 @@ class LiveCapture:
     def _read_all(self, capture: cv2.VideoCapture) -> str:
         """Keep the newest picture until no more come, and return the reason."""
         if not capture.isOpened():
-            there = present_cameras() if is_device(self._device) else None
+            there = present_cameras() if isinstance(self._device, int) or self._device.startswith("/dev/") else None
             return "it cannot be opened" if there is None else f"it cannot be opened: {there}"
         while not self._closed:
             done, image = capture.read()
             if not done:
                 return "it gives no more pictures"
-            self._keep(Picture(image.astype(np.uint8, copy=False), steady_clock.now_ns()))
+            with self._changed:
+                self._newest = Picture(image.astype(np.uint8, copy=False), steady_clock.now_ns())
+                self._silence.heard()
+                self._changed.notify_all()
         return "it was closed"
 
     def _opened(self) -> cv2.VideoCapture:
@@ -97,17 +103,6 @@ class LiveCapture:
         self.rate_hz = capture.get(cv2.CAP_PROP_FPS) or None
         return capture
 
-    def _keep(self, picture: Picture) -> None:
-        with self._changed:
-            self._newest = picture
-            self._silence.heard()
-            self._changed.notify_all()
-
-
-def is_device(camera: int | str) -> bool:
-    """Return whether a camera is named as a device of this machine, not as a stream or a file."""
-    return isinstance(camera, int) or camera.startswith("/dev/")
-
 
 def timeouts_of(device: int | str) -> list[int]:
     """Return OpenCV's parameters (name, ms, …) that give a silent stream the timeouts of `Silence`.
@@ -118,3 +113,23 @@ def timeouts_of(device: int | str) -> list[int]:
         return []
     limit_ms = round(1000 * OPENING_S)
     return [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, limit_ms, cv2.CAP_PROP_READ_TIMEOUT_MSEC, limit_ms]
+
+
+def present_cameras(listed: Path = LISTED) -> str | None:
+    """Return this machine's cameras in words, by the numbers that `--camera` takes; None where none can be listed."""
+    if not sys.platform.startswith("linux"):
+        return None
+    numbered = {int(path.name.removeprefix("video")): path for path in listed.glob("video[0-9]*")}
+    cameras = [
+        f"{number} ({_text(path / 'name')})"
+        for number, path in sorted(numbered.items())
+        if _text(path / "index") == "0"  # the others give no pictures, but what belongs to them
+    ]
+    return f"the cameras here are {', '.join(cameras)}" if cameras else "this machine has no camera"
+
+
+def _text(file: Path) -> str:
+    try:
+        return file.read_text(errors="replace").strip()
+    except OSError:
+        return ""

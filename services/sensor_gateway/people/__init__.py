@@ -1,1 +1,1 @@
-"""People in pictures: their landmarks, placed in the camera frame, lifted by depth, told apart from image to image."""
+"""People in pictures: their landmarks, placed in the camera frame, lifted by depth, identified from image to image."""

@@ -121,7 +121,8 @@ def lifted(landmarks: Landmarks, lens: Lens, depth_m: DepthImage, person_height_
     if scale is None:
         return placed(landmarks, lens, person_height_m)
     expected_m = scale * body.joints_m[:, 2]
-    measured_m = _measured(body, scale, depth_m)
+    surface_m = scale * (body.joints_m[:, 2] - body.offset_m)
+    measured_m = _surfaces(body, depth_m, surface_m - _REACH_M, surface_m + _REACH_M) + scale * body.offset_m
     distance_m = expected_m + _filled_along_limbs(measured_m - expected_m)
     confidence = body.confidence * np.where(np.isnan(measured_m), UNMEASURED, 1.0)
     return Placed(body.joints_m * (distance_m / body.joints_m[:, 2])[:, None], confidence, depth_std_m=None)
@@ -164,20 +165,20 @@ def _scale(body: _Body, depth_m: DepthImage) -> float | None:
     return float(np.median(known)) if len(known) >= LEAST_JOINTS else None
 
 
-def _measured(body: _Body, scale: float, depth_m: DepthImage) -> Array:
-    """Return the joints' distances (15,; m) where a surface is within `REACH_M` of the expected one; NaN elsewhere."""
-    expected_m = scale * (body.joints_m[:, 2] - body.offset_m)
-    return _surfaces(body, depth_m, expected_m - _REACH_M, expected_m + _REACH_M) + scale * body.offset_m
-
-
 def _surfaces(body: _Body, depth_m: DepthImage, low_m: Array, high_m: Array) -> Array:
-    """Return the depth of each visible joint's surface (15,; m) between two depths (15,; m); NaN if there is none."""
+    """Return the depth of each visible joint's surface (15,; m) between two depths (15,; m); NaN if there is none.
+
+    It is the median of a window's depths in range; of a limb only of those within `LIMB_DEPTH_M` of the nearest.
+    """
     surfaces = np.full(len(JOINTS), np.nan)
     for i in np.flatnonzero(body.confidence >= LEAST_VISIBLE):
         for window in WINDOWS:
             values = _window(depth_m, body.pixels[i], window * body.radius_px[i])
-            surfaces[i] = _surface(values, float(low_m[i]), float(high_m[i]), whole=bool(_IN_TRUNK[i]))
-            if not np.isnan(surfaces[i]):
+            near = values[(values > max(low_m[i], 0.0)) & (values < high_m[i])]
+            if len(near) and not _IN_TRUNK[i]:  # a limb may be narrower than its window: no mixed values, no background
+                near = near[near <= np.quantile(near, NEAREST_QUANTILE) + LIMB_DEPTH_M]
+            if len(near) >= max(LEAST_PIXELS, LEAST_SHARE * values.size):
+                surfaces[i] = np.median(near)
                 break
     return surfaces
 
@@ -189,18 +190,6 @@ def _window(depth_m: DepthImage, pixel: Array, half_px: float) -> DepthImage:
     if not (0 <= x < width and 0 <= y < height):
         return depth_m[:0]
     return depth_m[max(y - half, 0) : y + half + 1, max(x - half, 0) : x + half + 1]
-
-
-def _surface(values: DepthImage, low_m: float, high_m: float, *, whole: bool) -> float:
-    """Return the median of the depths in range, of a limb only of the nearest ones; NaN if they are too few.
-
-    A trunk fills its window, so all depths count (`whole`). A limb may be narrower than its window, so only depths
-    within `LIMB_DEPTH_M` of the nearest count, without mixed values and the background.
-    """
-    near = values[(values > max(low_m, 0.0)) & (values < high_m)]
-    if len(near) and not whole:
-        near = near[near <= np.quantile(near, NEAREST_QUANTILE) + LIMB_DEPTH_M]
-    return float(np.median(near)) if len(near) >= max(LEAST_PIXELS, LEAST_SHARE * values.size) else np.nan
 
 
 def _filled_along_limbs(differences_m: Array) -> Array:

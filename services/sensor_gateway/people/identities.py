@@ -78,7 +78,7 @@ class Identities:
         """Return the number of the person at each position (3,; m, camera frame) detected in one image; stamps rise."""
         known = [track for track in self._tracks if 0 < stamp_ns - track.stamp_ns <= FORGET_NS]
         costs = [[_cost(track, stamp_ns, position) for track in known] for position in positions_m]
-        assigned = _assigned(costs)
+        assigned = list(min(_assignments(costs, frozenset()), key=lambda choice: choice[0])[1])
         undetected = [i for i in range(len(known)) if i not in assigned]
         detected = [
             self._continued(known, i, row, undetected, stamp_ns, position)
@@ -98,7 +98,9 @@ class Identities:
     ) -> _Track:
         """Continue a person's track, only by prediction if the detection may belong to an undetected track as well."""
         if i is None:
-            return self._new(stamp_ns, position_m)
+            agent, self._next = self._next, self._next + 1
+            motion = MotionEstimate.initial(position_m, np.diag(MEASURED_STD_M**2), WALKING_STD_MPS)
+            return _Track(agent, stamp_ns, motion)
         if any(costs[other] < costs[i] + AMBIGUOUS_COST for other in undetected):
             return known[i].predicted(stamp_ns)
         return known[i].updated(stamp_ns, position_m)
@@ -108,30 +110,15 @@ class Identities:
         """The numbers of the people whose tracks are kept, detected or not."""
         return frozenset(track.agent for track in self._tracks)
 
-    def _new(self, stamp_ns: int, position_m: Array) -> _Track:
-        agent, self._next = self._next, self._next + 1
-        motion = MotionEstimate.initial(position_m, np.diag(MEASURED_STD_M**2), WALKING_STD_MPS)
-        return _Track(agent, stamp_ns, motion)
-
 
 def _cost(track: _Track, stamp_ns: int, position_m: Array) -> float:
     """Return the squared distance of a position from the prediction, in squared `REACH_M`; infinite beyond the gate."""
-    distance_m = _weighted_distance_m(track.predicted_m(stamp_ns), position_m)
-    return (distance_m / REACH_M) ** 2 if distance_m < track.reach_m(stamp_ns) else float("inf")
-
-
-def _weighted_distance_m(expected_m: Array, position_m: Array) -> float:
-    """Return the distance of two positions (3,), with the component along the ray weighted by `DEPTH_SHARE`."""
     ray = position_m / max(float(np.linalg.norm(position_m)), 1e-9)
-    offset = position_m - expected_m
+    offset = position_m - track.predicted_m(stamp_ns)
     along = float(offset @ ray)
     across = offset - along * ray
-    return float(np.hypot(np.linalg.norm(across), DEPTH_SHARE * along))
-
-
-def _assigned(costs: Sequence[Sequence[float]]) -> list[int | None]:
-    """Assign each row a different column, or None at `NEWCOMER_COST`, so that the sum of costs is smallest."""
-    return list(min(_assignments(costs, frozenset()), key=lambda choice: choice[0])[1])
+    distance_m = float(np.hypot(np.linalg.norm(across), DEPTH_SHARE * along))
+    return (distance_m / REACH_M) ** 2 if distance_m < track.reach_m(stamp_ns) else float("inf")
 
 
 def _assignments(

@@ -74,7 +74,7 @@ MEDIAPIPE_WEIGHTS = joint_weights(LANDMARKS, MEDIAPIPE_33)
 
 
 class PoseModelError(ValueError):
-    """There is no usable pose model; the message tells what is wrong and what to do."""
+    """There is no usable pose model; the message names the problem and the remedy."""
 
 
 class PoseEstimator:
@@ -130,7 +130,7 @@ class PoseEstimator:
 
 
 def within(past_ns: int | None, stamp_ns: int, span_ns: int) -> bool:
-    """Tell whether a past stamp is less than `span_ns` before another."""
+    """Return whether a past stamp is less than `span_ns` before another."""
     return past_ns is not None and 0 <= stamp_ns - past_ns < span_ns
 
 
@@ -158,7 +158,15 @@ class Landmarker:
         height, width = image_bgr.shape[:2]
         result = self._landmarker.detect_for_video(self._image(image_bgr), self._last_ms)
         pairs = zip(result.pose_landmarks, result.pose_world_landmarks, strict=True)
-        return [_landmarks(in_image, in_world, width, height) for in_image, in_world in pairs]
+        return [
+            Landmarks(
+                image_px=np.array([(mark.x * width, mark.y * height) for mark in in_image]) - HALF_PX,
+                world_m=np.array([(mark.x, mark.y, mark.z) for mark in in_world]),
+                visibility=np.array([mark.visibility for mark in in_image]),
+                joint_weights=MEDIAPIPE_WEIGHTS,
+            )
+            for in_image, in_world in pairs
+        ]
 
     def _image(self, image_bgr: NDArray[np.uint8]) -> Any:
         rgb = cv2.cvtColor(image_bgr, cv2.COLOR_BGR2RGB)
@@ -203,12 +211,3 @@ def _mediapipe() -> Any:
     except ImportError as error:
         raise PoseModelError(f"finding people in images needs MediaPipe ({error}): run {adding('camera')}") from None
     return mediapipe
-
-
-def _landmarks(in_image: Any, in_world: Any, width: int, height: int) -> Landmarks:
-    return Landmarks(
-        image_px=np.array([(mark.x * width, mark.y * height) for mark in in_image]) - HALF_PX,
-        world_m=np.array([(mark.x, mark.y, mark.z) for mark in in_world]),
-        visibility=np.array([mark.visibility for mark in in_image]),
-        joint_weights=MEDIAPIPE_WEIGHTS,
-    )
