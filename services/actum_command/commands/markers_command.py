@@ -16,7 +16,8 @@ MOST_IDS = 1000  # as many as the largest family has
 def markers(
     output: Annotated[Path, typer.Option("-o", "--output", help="the PDF file to write")],
     family: Annotated[
-        str, typer.Option(help="the marker family to print, by its name in OpenCV; ignored with --board")
+        str,
+        typer.Option(help="the marker family (OpenCV dictionary) to print, such as DICT_4X4_50; ignored with --board"),
     ] = "DICT_4X4_50",
     ids: Annotated[
         str, typer.Option(help="ids of the markers to print, such as 1,2,3 or 0-9; ignored with --board")

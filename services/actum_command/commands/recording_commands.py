@@ -69,9 +69,9 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "which start and end marks of actions to store, chosen by who made them and separated by commas: "
-                "manual (people and other programs), simulator (the simulated scene), replay ('actum play'), auto (the "
-                "classifier); or all. Default: manual; with --times, none of them"
+                "store only the start and end marks that were made by these, separated by commas: manual (people and "
+                "other programs), simulator (the simulated scene), replay ('actum play'), auto (the classifier). all "
+                "stores every mark. Default: manual; with --times, none of these marks"
             )
         ),
     ] = None,
@@ -94,8 +94,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--events",
             help=(
-                "run as a service that keeps a history: it stores only events, final actions and start and end marks, "
-                "in files in the folder OUTPUT"
+                "run as a service that keeps a history: it stores only events, the classifier's answer to each action "
+                "once the action has ended, and start and end marks, in files in the folder OUTPUT"
             ),
         ),
     ] = False,
@@ -104,13 +104,12 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Record a sensor's streams, and the start and end marks of actions, to a file for training or for playing again.
 
-    With --label and --times, the recording is labelled automatically, such as actum record wave.mcap --label wave
-    --times 5.
+    With --label and --times, the recording is labelled automatically. Example: actum record wave.mcap --label wave
+    --times 5
 
     No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.
 
-    With --events, the command runs as a service that stores only events, final actions and marks, in the folder OUTPUT.
-    The --history options apply only with --events.
+    With --events, the command runs as a service that keeps a history of recognised actions in the folder OUTPUT.
     """
     if events:
         keep_events(output, arguments_of(HISTORY, given))
