@@ -64,6 +64,6 @@ def _numbers(text: str) -> list[int]:
         if not span:
             raise PatternError(f"--ids contains the range {part!r}: write its smaller number first, such as 0-9")
         if len(numbers) + len(span) > MOST_IDS:
-            raise PatternError(f"--ids names more than {MOST_IDS} ids: use fewer")
+            raise PatternError(f"--ids names more than {MOST_IDS} markers: name at most {MOST_IDS}")
         numbers += span
     return numbers

@@ -93,7 +93,7 @@ def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOptio
             number += 1
             segment_id = f"toggle-{client.run}-{number}"
             _put(client, _mark("start", segment_id, agent=agent, hand=hand, label=label))
-            ended = _waits_for_enter("press Enter to end it ")
+            ended = _waits_for_enter(f"press Enter to end action {number} ")
             _put(client, _mark("end", segment_id))
             for line in answers.until(segment_id, interrupted=_enter_was_pressed):
                 console.print(line, soft_wrap=True)

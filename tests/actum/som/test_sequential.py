@@ -72,7 +72,7 @@ def test_progress_is_reported_to_its_end() -> None:
 @pytest.mark.parametrize(
     ("order", "decay", "problem"),
     [
-        ([0, 2], Steps([0.1] * 2, [1.0] * 2), "row numbers 0 to 2; expected 0 to 1"),
+        ([0, 2], Steps([0.1] * 2, [1.0] * 2), "row numbers from 0 to 2; expected row numbers from 0 to 1"),
         ([-1, 0], Steps([0.1] * 2, [1.0] * 2), "row numbers -1 to 0"),
         ([0.5], Steps([0.1], [1.0]), "row numbers"),
         ([0], Steps([np.nan], [1.0]), "alpha"),
