@@ -139,7 +139,7 @@ OF_FRAMES: Mapping[str, Problem] = {
         "OpenNI 2 finds no camera.", "Install the camera's driver; see [cameras](cameras.md#depth-cameras)."
     ),
     "… was unplugged": Problem("The OpenNI device was unplugged.", "Plug it in."),
-    "OpenNI opened the file as a camera, not as a recording": Problem(
+    "a driver in OpenNI's folder opened the file as a camera, so OpenNI cannot play the file as a recording": Problem(
         "A driver that does not play files claims the recording.", "Remove that driver from OpenNI's folder."
     ),
     "the camera lacks colour or depth images: use a camera that has both": Problem(
@@ -154,7 +154,10 @@ OF_FRAMES: Mapping[str, Problem] = {
     ),
     "frozen: the picture has not changed for … s": Problem("The picture repeats bit for bit.", "Restart the camera."),
     "NiTE says: …": Problem("NiTE failed.", "See its message."),
-    "NiTE cannot track people with this camera (…)": Problem("NiTE refuses the device.", "Unset `NITE2_REDIST64`."),
+    "NiTE, which finds people in depth images, cannot use this camera (…): unset NITE2_REDIST64 and NITE2_REDIST and "
+    "restart the gateway, which then finds people with the pose model": Problem(
+        "NiTE refuses the device.", "Unset the variables, which NiTE's installer sets."
+    ),
 }
 
 ABSENCES: Mapping[str, Problem] = {

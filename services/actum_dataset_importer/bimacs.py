@@ -119,7 +119,9 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         bodies = _bodies(rows)
         for label in labels:
             if label.target is not None and label.target not in bodies:
-                raise ValueError(f"the labels refer to a {OBJECTS[label.target]}, for which the table has no columns")
+                raise ValueError(
+                    f"the labels name the object {OBJECTS[label.target]}, but the file has no columns for it"
+                )
         kept = [label for label in labels if label.first < label.last]
         marks = [m for i, label in enumerate(kept) for m in _marks(label, _id(path, label, i), stamps_ns, sensor)]
         truths = [t for i, label in enumerate(kept) for t in _truths(label, _id(path, label, i), stamps_ns, sensor)]

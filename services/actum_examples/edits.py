@@ -56,9 +56,9 @@ def move(take: Take, segment: MarkedSegment, start_ns: int, end_ns: int) -> None
         if moved.mirrored != other.mirrored and moved.shares_frames(other):
             mirrored, plain = (moved, other) if moved.mirrored else (other, moved)
             raise EditError(
-                f"the segments {mirrored.segment_id} and {plain.segment_id} cannot share frames, because left "
-                f"and right are exchanged only in {mirrored.segment_id}: move the segments apart, or mirror one of "
-                "the two first"
+                f"one frame would belong to both segments {mirrored.segment_id} and {plain.segment_id}, but left and "
+                f"right are exchanged (mirrored) only in {mirrored.segment_id}: leave time between the two segments, "
+                "or mirror one of them first"
             )
     _mend(take, [(segment, moved)])
 

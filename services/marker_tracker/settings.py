@@ -30,16 +30,18 @@ class Settings(ServiceSettings):
             "--objects"
         ),
     )
-    dictionary: str = Field("DICT_4X4_50", description="family of the printed markers, by its name in OpenCV")
+    dictionary: str = Field(
+        "DICT_4X4_50", description="family (OpenCV dictionary) of the printed markers, such as DICT_APRILTAG_36h11"
+    )
     marker_size_m: float = Field(
         0.08, gt=0, le=10, description="side length of the black square of a printed marker (m)"
     )
     objects: dict[int, ObjectSpec] = Field(
         default_factory=dict,
         description=(
-            "the name of the object that carries each marker id and, if a marker does not have the size "
-            '--marker-size-m, the marker\'s size in metres, such as {"3": {"name": "cup", "size_m": 0.05}}. '
-            "Default: each marker is an object of its own"
+            "for each marker id, the name of the object that carries the marker and, only if the side length of "
+            'this marker is not --marker-size-m, its side length in metres, such as {"3": {"name": "cup", "size_m": '
+            "0.05}}. Default: each marker is an object of its own"
         ),
     )
     memory_s: float = Field(

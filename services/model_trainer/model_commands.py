@@ -42,7 +42,10 @@ class ModelCommands:
         """Set a model beside another, or beside the one in use."""
         other_id = request.with_ or self._models.active
         if other_id is None:
-            raise Refusal("no model is in use: name the other model of the comparison in the field 'with'")
+            raise Refusal(
+                "the model cannot be compared with the model in use, because no model is in use: give the id of "
+                "another model in the field 'with'"
+            )
         active = self._models.active
         one, other = (ModelListed.of(self._models.get(each), active) for each in (request.model, other_id))
         return Comparison(

@@ -101,7 +101,9 @@ class SetStore:
         except (OSError, ValueError) as error:
             created = ""
             problem = (
-                error.strerror or str(error) if isinstance(error, OSError) else "no JSON object with a date `created`"
+                error.strerror or str(error)
+                if isinstance(error, OSError)
+                else "the file is not a JSON object with a date in the field `created`"
             )
             unreadable.append(
                 f"{folder / DESCRIPTION}: {problem}; move this file to another folder, and create the set again"
@@ -197,7 +199,9 @@ class SetStore:
         """Read a take, or return what was read of it before where the file is still the same."""
         if path.exists() and not path.is_file():
             raise RecordingError(
-                path, "the path names a folder or a device, not a recording file", "move it out of the set's folder"
+                path,
+                "a folder or a device has this name, which only a recording file may have",
+                "move the folder or device out of the folder of the set",
             )
         stat = path.stat()
         version = stat.st_mtime_ns, stat.st_size
@@ -209,7 +213,7 @@ class SetStore:
             raise RecordingError(
                 path,
                 f"the recording has {count} actions with a start and an end; at most {MOST_SEGMENTS} are allowed",
-                "split the recording",
+                "delete some of these actions with 'actum label delete', or record them in several shorter recordings",
             )
         self._read[path] = version, take
         return take

@@ -20,15 +20,15 @@ class Settings(ServiceSettings):
     model: Path | None = Field(
         None,
         description=(
-            "the model file that the classifier loads (.npz); the trainer copies each model that is put into use to "
-            "this file. Default: model.npz in --trainer-data"
+            "the model file that the classifier loads (.npz). Whenever a user puts a model into use, the trainer "
+            "overwrites this file with that model. Default: model.npz in --trainer-data"
         ),
     )
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file to put into use. The trainer copies this file to --model when it finds the file for the "
-            "first time, and again whenever the file changes, in place of the model in use; the trainer never writes "
-            "to this file. Trained models stay in --trainer-data. Default: no such file"
+            "a model file that the trainer puts into use: when the trainer first finds this file, and whenever this "
+            "file changes, the trainer overwrites --model with a copy of it. The trainer never changes this file, and "
+            "keeps the models that it trained in --trainer-data. Default: no such file"
         ),
     )

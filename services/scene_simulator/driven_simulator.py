@@ -149,11 +149,13 @@ class DrivenSimulator(Simulator):
         """Have the simulated person do actions, or everyday things, as soon as the ones before are done."""
         if not request.actions and not request.everyday_s:
             raise Refusal(
-                "there is nothing to do: give actions, or a number of seconds of everyday activities (everyday_s)"
+                "the simulated person was given nothing to do: name at least one action in the field 'actions', or set "
+                "the field 'everyday_s' to the number of seconds of background activities"
             )
         if len(self._waiting) >= MOST_WAITING:
             raise Refusal(
-                f"{MOST_WAITING} performances, the most allowed, are already waiting: try again when some are done"
+                f"{MOST_WAITING} requests to the simulated person are already waiting, and no more can wait: try again "
+                "after the person has carried out some of them"
             )
         try:
             programme_of(request)

@@ -91,7 +91,10 @@ class Scene:
         place_m: tuple[float, float] = (0.0, 0.0),
     ) -> None:
         if not programme and everyday is None:
-            raise ValueError("the programme is empty: give at least one task, or everyday activities")
+            raise ValueError(
+                "the simulated person has nothing to do: give at least one task in the argument 'programme', or "
+                "background activities in the argument 'everyday'"
+            )
         self.programme: Sequence[Task] = tuple(programme)
         self.parameters = (parameters or load_parameters()).moved(*place_m)
         self.items = self.parameters.objects.items

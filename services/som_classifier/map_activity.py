@@ -94,8 +94,8 @@ def resampled(path: Array, points: int) -> Array:
     """
     if not len(path) or points < 2:
         raise ValueError(
-            f"cannot place {points} points along a path of {len(path)} points: at least 2 points and a path of at "
-            "least 1 point are needed"
+            f"a path given by {len(path)} points cannot be resampled to {points} evenly spaced points: give a path of "
+            "at least 1 point, and ask for at least 2 evenly spaced points"
         )
     lengths = np.hypot(*np.diff(path, axis=0).T)
     arc_lengths = np.concatenate(([0.0], np.cumsum(lengths)))

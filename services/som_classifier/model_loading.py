@@ -80,7 +80,7 @@ def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
         if made_by == __version__ or not VERSION.fullmatch(made_by):
             raise
         problem = f"actum {made_by} made the model, and actum {__version__} cannot use it ({_problem(error)})"
-        raise ModelError(path, problem, "train it anew") from None
+        raise ModelError(path, problem, "train a new model from the same recordings") from None
 
 
 def _problem(error: Exception) -> str:

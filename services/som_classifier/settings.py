@@ -57,9 +57,9 @@ class Settings(ServiceSettings):
     segments: WantedSegments = Field(
         "both",
         description=(
-            "which actions to recognise: marks (only actions whose start and end another program marks), auto (only "
-            "actions that the classifier finds by itself), or both (if a marked action overlaps a found one, only the "
-            "marked one counts)"
+            "which actions to recognise: marks (only actions whose start and end are marked by another program), auto "
+            "(only actions that the classifier finds by itself), or both (if a marked action overlaps a found one, "
+            "only the marked action is published)"
         ),
     )
     false_alarms_per_min: float | None = Field(
@@ -75,29 +75,31 @@ class Settings(ServiceSettings):
         0.0,
         description=(
             "an action that the classifier finds by itself is not published if it starts less than this many seconds "
-            "after the end of the previous one"
+            "after the end of the previous action"
         ),
     )
     cooldown_s: Annotated[dict[str, Seconds], NoDecode, BeforeValidator(_pairs)] = Field(
         {},
         description=(
-            "for each action, the number of seconds after it in which the classifier does not publish the same action "
-            "again, such as wave=3,clap=1; actions whose start and end another program marks are not affected. "
-            "Default: 0 for all actions"
+            "a number of seconds for each action, such as wave=3,clap=1: after the classifier has published an action, "
+            "it does not publish the same action again if that starts less than this many seconds after the end of the "
+            "published one. This does not affect actions whose start and end are marked by another program. Default: 0 "
+            "for all actions"
         ),
     )
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "of the actions that the classifier finds by itself, publish only these, such as wave,clap; actions whose "
-            "start and end another program marks are not affected. Default: all actions of the model are published"
+            "of the actions that the classifier finds by itself, publish only these, such as wave,clap. This does not "
+            "affect actions whose start and end are marked by another program. Default: all actions of the model are "
+            "published"
         ),
     )
     disabled_actions: Names = Field(
         frozenset(),
         description=(
-            "do not publish these actions, such as wave,clap, if the classifier finds them by itself; actions whose "
-            "start and end another program marks are not affected. Default: no action is disabled"
+            "do not publish these actions, such as wave,clap, if the classifier finds them by itself. This does not "
+            "affect actions whose start and end are marked by another program. Default: no action is disabled"
         ),
     )
 

@@ -25,7 +25,8 @@ class SupervisedLayer:
         weights = np.array(self.weights, order="C")
         if weights.ndim != 2 or not np.allclose(np.linalg.norm(weights, axis=1), 1.0):
             raise ValueError(
-                f"the weights have shape {weights.shape}; expected a matrix (actions, inputs) whose rows have length 1"
+                f"the weights have shape {weights.shape}; expected a matrix (actions, inputs) in which each row is a "
+                "unit vector (Euclidean norm 1)"
             )
         weights.setflags(write=False)
         object.__setattr__(self, "weights", weights)

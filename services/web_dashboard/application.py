@@ -166,7 +166,8 @@ def _tell_bug(task: asyncio.Task[None], orders: Orders) -> None:
     """Log what ended a task that has no end, and end the server with it; a session that is closed meanwhile may."""
     if not task.cancelled() and orders.client is not None:
         log.error(
-            "the web server of the page stops, because a bug occurred while it sent the services' state to the page",
+            "the web server of the page stops, because a bug occurred while it sent the services' state to the page: "
+            "report the bug with the lines that follow",
             exc_info=task.exception(),
         )
         task.get_loop().stop()

@@ -106,8 +106,15 @@ class Orders:
         except (ValueError, NotAnsweredError) as error:
             return self.refuse(order.id, str(error))
         except Exception:
-            log.exception("a bug occurred while handling a message from the page")
-            return self.refuse(order.id, "a bug occurred in web_dashboard: see its log")
+            log.exception(
+                "a bug occurred in web_dashboard while it carried out a request of the page. The request may be done "
+                "only in part; web_dashboard continues to run. Report the bug with the lines that follow"
+            )
+            return self.refuse(
+                order.id,
+                "a bug occurred in web_dashboard, so this request may be done only in part: report the bug with the "
+                "last lines of web_dashboard's log",
+            )
 
     def refuse(self, number: int | None, refusal: str, refused: bool = False) -> str:
         """Count a refusal, and return it as an answer; `refused` says that the service itself does not do it."""

@@ -114,10 +114,13 @@ def _unpack(key: str, payload: bytes) -> dict[str, Any]:
         # the values of a short payload take little memory, however many there are
         fields = msgpack.unpackb(payload) if len(payload) <= keys.MOST_BYTES else unpack(payload)
     except UNPACK_ERRORS as error:
-        raise DecodeError("not_msgpack", f"{key}: {type(error).__name__} {error}") from None
+        raise DecodeError(
+            "not_msgpack", f"the message on {key} cannot be decoded as MessagePack ({type(error).__name__}: {error})"
+        ) from None
     if not isinstance(fields, dict):
         raise DecodeError(
-            "not_a_map", f"{key}: the payload is a {type(fields).__name__}; expected a map of field names to values"
+            "not_a_map",
+            f"the message on {key} contains a {type(fields).__name__}; expected a map of field names to values",
         )
     return fields
 
@@ -148,7 +151,10 @@ def unpack(payload: bytes) -> Any:
         nonlocal left
         left -= 1 + len(container)
         if left < 0:
-            raise ValueError(f"the message has more than {MOST_VALUES} values")
+            raise ValueError(
+                f"the message contains more than {MOST_VALUES} values (numbers, texts, lists and maps, also nested "
+                "ones), so it is refused: send fewer values per message"
+            )
         return container
 
     return msgpack.unpackb(

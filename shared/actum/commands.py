@@ -155,7 +155,10 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
 def _from_json(payload: bytes) -> Any:
     """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
     if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
-        raise ValueError(f"the request has more than {MOST_VALUES} values")
+        raise ValueError(
+            f"the request contains more than {MOST_VALUES} values (numbers, texts, lists and objects, also nested "
+            "ones), so it is refused: send fewer values per request"
+        )
     return json.loads(payload, object_pairs_hook=with_different_names)
 
 

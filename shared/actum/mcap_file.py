@@ -82,7 +82,10 @@ class McapFile:
                 case Message():
                     channel = channels.get(record.channel_id)
                     if channel is None:
-                        raise self._damaged(f"a message refers to the unknown channel {record.channel_id}")
+                        raise self._damaged(
+                            f"one of its messages belongs to channel {record.channel_id}, which the file does not "
+                            "describe"
+                        )
                     encoding = encoding_of(channel, schemas.get(channel.schema_id, ""))
                     yield StoredMessage(record.publish_time, channel.topic, record.data, encoding)
 
@@ -131,7 +134,7 @@ class _Exact:
 
     def read(self, length: int) -> bytes:
         if length < 0:
-            raise ValueError(f"a record has the negative length {length}")
+            raise ValueError(f"the file states a length of {length} bytes for one of its records; expected 0 or more")
         if length > self._remaining:
             raise EndOfFile
         self._remaining -= length
@@ -153,10 +156,15 @@ class _Chunks:
         size = chunk.uncompressed_size
         self._left -= size
         if size > LARGEST_CHUNK or self._left < 0:
-            raise ValueError(f"a chunk of {len(chunk.data)} bytes would decompress to {size} bytes, more than allowed")
+            raise ValueError(
+                f"a block of {len(chunk.data)} compressed bytes in the file would decompress to {size} bytes; at most "
+                f"{min(LARGEST_CHUNK, self._left + size)} bytes are allowed for this block"
+            )
         data = _decompressed(chunk)
         if len(data) != size:
-            raise ValueError(f"a chunk states {size} bytes as its decompressed size, but decompresses to another size")
+            raise ValueError(
+                f"a compressed block in the file should decompress to {size} bytes, but decompresses to another size"
+            )
         return breakup_chunk(replace(chunk, compression="", data=data), validate_crc=True)
 
 
@@ -172,7 +180,7 @@ def _decompressed(chunk: Chunk) -> bytes:
         case "lz4":
             return bytes(lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most))
         case other:
-            raise ValueError(f"unknown compression {other!r}")
+            raise ValueError(f"a block in the file is compressed with {other!r}; only zstd and lz4 can be read")
 
 
 def encoding_of(channel: Channel, schema: str) -> str:

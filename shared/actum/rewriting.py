@@ -90,7 +90,10 @@ def _copy(
             copying.receive(record)
         except KeyError as error:
             raise RecordingError(
-                source.path, f"the recording is damaged (a message belongs to the unknown channel {error})", REMEDY
+                source.path,
+                f"the recording is damaged (one of its messages belongs to channel {error}, which the file does not "
+                "describe)",
+                REMEDY,
             ) from None
     if metadata and not copying.described:
         writer.add_metadata(METADATA, dict(metadata))

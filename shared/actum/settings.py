@@ -142,9 +142,9 @@ class ServiceSettings(BaseSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the service stores the last actions or events that it published, to publish them again "
-            "after a restart. Default: they are not stored. Only som_classifier and action_fusion do this; the other "
-            "services ignore the option"
+            "used only by som_classifier and action_fusion, ignored by all other services: a folder in which the "
+            "service stores the last actions or events that it published, to publish them again after a restart. "
+            "Default: no folder, so nothing is stored"
         ),
     )
     health_file: Path | None = Field(

@@ -155,7 +155,7 @@ def test_a_channel_of_a_schema_that_is_not_there_is_copied_without_one(tmp_path:
 def test_a_message_of_an_unknown_channel_is_told_and_the_file_is_as_it_was(tmp_path: Path) -> None:
     path = foreign(tmp_path / "a.mcap.part", channel=5)
     before = path.read_bytes()
-    with pytest.raises(RecordingError, match="the unknown channel 5"):
+    with pytest.raises(RecordingError, match="channel 5, which the file does not describe"):
         finish(tmp_path / "a.mcap")
     assert [*tmp_path.iterdir()] == [path] and path.read_bytes() == before
 

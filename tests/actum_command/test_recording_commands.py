@@ -92,13 +92,13 @@ def test_whose_actions_are_stored_and_whose_are_not_is_told(live: Live, tmp_path
     live.comes(skeleton(1), *scene, *own)
     told = invoke("record", tmp_path / "a.mcap", "--label", "push").stdout
     assert "2 marked by manual, labelled 'push'" in told
-    assert "1 marked by simulator left out: --marks simulator or --marks all takes such" in told
-    assert "without an end, so nothing is learnt from them: robot" in told
+    assert "1 marked by simulator not stored: to store them, use --marks simulator or --marks all" in told
+    assert "marked without an end, so training does not use them: robot" in told
     live.comes(skeleton(1), *scene, *own)
     told = invoke("record", tmp_path / "b.mcap", "--marks", "manual, simulator").stdout
     assert "3 marked actions" in told
     assert "1 marked by simulator, without a label" in told
-    assert "left out" not in told
+    assert "not stored" not in told
 
 
 def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: Path) -> None:
@@ -128,7 +128,7 @@ def test_what_is_repeated_with_nobody_there_is_told(live: Live, tmp_path: Path) 
 def test_standing_still_is_no_example(live: Live, tmp_path: Path) -> None:
     live.comes(*Stream().then(rest(12)).skeletons(noise_m=0.008))
     told = invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 3, "--seconds", 3).stdout
-    assert "this does not count, nothing was cut: the movement was no larger than the noise" in told
+    assert "no repetition was found in the recording: the movement was no larger than the noise" in told
     assert "marked by cut" not in told
 
 
@@ -136,7 +136,7 @@ def test_a_recording_that_lacks_repetitions_is_left_out_of_training(live: Live, 
     live.comes(*five_waves().skeletons())
     told = invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 12, "--seconds", 3).stdout
     assert "of 12 repetitions found: record " in told
-    assert "left out of training" in told
+    assert "training leaves this recording out" in told
     assert Recording(tmp_path / "a.mcap").metadata["excluded"] == "true"
 
 
@@ -168,7 +168,10 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
     assert f"actum record {path} --finish" in told
     assert (tmp_path / "a.mcap.part").read_bytes() == left
     assert live.receive() is not None, "nobody has listened"
-    assert f"1 messages, up to where it breaks off, written to {path}" in invoke("record", path, "--finish").stdout
+    assert (
+        f"1 messages, all that the unfinished file holds, written to {path}"
+        in invoke("record", path, "--finish").stdout
+    )
     assert [message.stamp_ns for message in Recording(path).messages()] == [1]
     assert f"{path} already exists" in refused("record", path)
     assert "add --label" in refused("record", tmp_path / "b.mcap", "--times", 5)
@@ -199,7 +202,7 @@ def test_a_full_disk_is_told_with_what_to_do(live: Live, tmp_path: Path, monkeyp
     live.comes(skeleton(1))
     monkeypatch.setattr("mcap.writer.Writer.add_message", full)
     told = refused("record", tmp_path / "a.mcap")
-    left = f"{tmp_path / 'a.mcap.part'} holds what was stored"
+    left = f"the messages stored before this error are in {tmp_path / 'a.mcap.part'}"
     assert f"cannot be written (No space left on device); {left}" in told
     assert f"actum record {tmp_path / 'a.mcap'} --finish" in told
 
@@ -254,7 +257,7 @@ def cut(path: Path) -> Path:
 def test_a_label_that_nothing_got_is_told(marks: list[Message], told: bool, live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1), *marks)
     recorded = invoke("record", tmp_path / "a.mcap", "--label", "push")
-    assert ("nothing of it is labelled 'push'" in recorded.stdout) == told
+    assert ("nothing is labelled 'push'" in recorded.stdout) == told
 
 
 def test_blanks_between_persons_are_none_of_their_names(live: Live, tmp_path: Path) -> None:

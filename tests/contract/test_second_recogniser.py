@@ -120,5 +120,8 @@ def test_a_file_that_another_version_made_otherwise_is_refused_by_that_version_s
         arrays = {**file, "examples": file["examples"][..., :-3]}
     arrays["metadata"] = np.array(str(arrays["metadata"]).replace('"actum_version": "', '"actum_version": "9'))
     np.savez(folder / "old.npz", **arrays)
-    with pytest.raises(ModelError, match=r"actum 9.* made the model, .*its examples are of shape.*train it anew"):
+    with pytest.raises(
+        ModelError,
+        match=r"actum 9.* made the model, .*its examples are of shape.*train a new model from the same recordings",
+    ):
         load_model(folder / "old.npz")

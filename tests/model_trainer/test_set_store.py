@@ -69,7 +69,7 @@ def test_a_take_with_more_examples_than_can_be_changed_at_once_is_told(
             for each in segment_marks(2 * number, 2 * number + 1, "kinect0", f"wave-{number}", "wave"):
                 recorder.write(each)
     with pytest.raises(
-        RecordingError, match="the recording has 2 actions with a start and an end; at most 1 are allowed; split"
+        RecordingError, match="the recording has 2 actions with a start and an end; at most 1 are allowed; delete"
     ):
         store.add("waves", recorder.path)
     assert "2 actions with a start" in store.get("waves").unreadable[0]

@@ -145,7 +145,7 @@ def test_the_same_seeds_give_the_same_scene_and_others_another() -> None:
 
 
 def test_an_empty_programme_is_refused() -> None:
-    with pytest.raises(ValueError, match="programme is empty"):
+    with pytest.raises(ValueError, match="person has nothing to do"):
         Scene([], 0, 0)
 
 

@@ -102,7 +102,7 @@ def test_a_still_posture_is_its_point_repeated() -> None:
 
 @pytest.mark.parametrize(("path", "count"), [(np.empty((0, 2)), 5), (np.zeros((3, 2)), 1)])
 def test_no_point_or_no_length_is_an_error(path: np.ndarray, count: int) -> None:
-    with pytest.raises(ValueError, match="cannot place"):
+    with pytest.raises(ValueError, match="cannot be resampled"):
         ordered_vector(path, count)
 
 

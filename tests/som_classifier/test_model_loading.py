@@ -272,7 +272,7 @@ def test_a_model_that_another_version_made_otherwise_names_that_version(
 ) -> None:
     told = refused(with_metadata(saved(tmp_path, kind), actum_version="0.0.9", **change))
     assert f"actum 0.0.9 made the model, and actum {__version__} cannot use it ({detail}" in told
-    assert "train it anew with 'actum train" in told
+    assert "train a new model from the same recordings with 'actum train" in told
     assert "damaged" not in told
 
 

@@ -40,12 +40,12 @@ def test_random_weights_are_positive_and_of_unit_length() -> None:
 
 @pytest.mark.parametrize("weights", [np.ones(3), np.ones((2, 3)), np.zeros((2, 3)), np.full((2, 3), np.nan)])
 def test_weights_that_are_no_unit_vectors_are_refused(weights: np.ndarray) -> None:
-    with pytest.raises(ValueError, match="rows have length 1"):
+    with pytest.raises(ValueError, match="each row is a unit vector"):
         SupervisedLayer(weights)
 
 
 def test_delta_rule_by_hand() -> None:
-    """y = 0.6 where 1 is desired: w + 0.5 · 0.4 · x, made rows have length 1; y = 0 where 0 is desired: unchanged."""
+    """y = 0.6 where 1 is desired: w + 0.5 · 0.4 · x, made unit length; y = 0 where 0 is desired: unchanged."""
     weights = np.array([[0.6, 0.8], [0.0, 1.0]])
     adapt(weights, np.array([1.0, 0.0]), np.array([1.0, 0.0]), 0.5)
     np.testing.assert_allclose(weights[0], np.array([0.8, 0.8]) / np.hypot(0.8, 0.8))

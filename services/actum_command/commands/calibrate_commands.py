@@ -46,7 +46,10 @@ MarkerMm = Annotated[
     float,
     typer.Option(help="side length of one marker on the calibration board, as you measure it on the print (mm)"),
 ]
-Family = Annotated[str, typer.Option(help="family of the markers on the calibration board, by its name in OpenCV")]
+Family = Annotated[
+    str,
+    typer.Option(help="family (OpenCV dictionary) of the markers on the calibration board, such as DICT_5X5_100"),
+]
 
 
 def _intrinsics_of(seen: str) -> Any:
@@ -123,11 +126,11 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Find where the camera that sees the markers is, relative to the camera that sees the people.
+    """Measure where one camera, which sees the markers, stands relative to another camera, which sees the people.
 
-    Do this only if you use one camera for the markers and another for the people, after 'actum calibrate intrinsics'
-    for both. The command needs 6 to 10 pairs of pictures of the board that 'actum markers --board' prints. It writes a
-    calibration file for the camera that sees the markers.
+    Use this command only if you have two such cameras, after 'actum calibrate intrinsics' for both. The command needs
+    6 to 10 pairs of pictures of the board that 'actum markers --board' prints. It writes a calibration file for the
+    camera that sees the markers.
     """
     if (live is not None) == bool(pairs):
         fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect1,kinect0")
@@ -237,7 +240,7 @@ def _report_extrinsics(fit: Extrinsics, pairs: Sequence[Pair]) -> None:
         say(f"  {pair.name}: {error:.3f} px")
     console.print(
         f"the camera that sees the markers is at x {x:+.3f}, y {y:+.3f}, z {z:+.3f} m (right, down, forward) from "
-        f"the one that sees the people, ± {fit.position_deviation_mm:.1f} mm and ± "
+        f"the camera that sees the people, ± {fit.position_deviation_mm:.1f} mm and ± "
         f"{fit.rotation_deviation_deg:.2f} deg",
         soft_wrap=True,
     )

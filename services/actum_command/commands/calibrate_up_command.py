@@ -30,9 +30,9 @@ def up(
         ),
     ] = None,
 ) -> None:
-    """Find how a camera is tilted from one person who stands upright and still in front of it for two seconds.
+    """Measure the tilt of a camera; a person has to stand upright and still in front of the camera for two seconds.
 
-    The arms of the person have to hang down. The command prints the value for the environment variable
+    The person has to let the arms hang down. The command prints the value for the environment variable
     ACTUM_UP_IN_CAMERA of the sensor gateway.
     """
     frames = _live() if recording is None else _recorded(recording)

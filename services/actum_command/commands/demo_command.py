@@ -33,8 +33,8 @@ def demo(
         typer.Option(
             min=0,
             help=(
-                "number of simulated people to test on, all of them new to the model; 0 tests on one person on whom "
-                "the model was trained"
+                "number of simulated people to test on, all of them new to the model. With 0, the test uses one person "
+                "on whom the model was trained"
             ),
         ),
     ] = SHOWN,

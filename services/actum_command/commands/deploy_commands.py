@@ -97,10 +97,11 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         ),
     ] = False,
 ) -> None:
-    """Write a folder of files for each host of a deployment, and folders of credentials for users' programs.
+    """Write a folder of files for each host, and a folder of credentials for each role that a user can have.
 
-    Copy each host's folder to that host and follow its README.md there. Copy one of the folders in people/ to each
-    user's machine. To change the deployment, run the command again with other options.
+    Copy each host's folder to that host and follow its README.md there. The folders of credentials are in people/, such
+    as people/viewer for users who only watch: copy the folder of a user's role to that user's machine. To change the
+    deployment, run the command again with other options.
     """
     if not_secured and passwords:
         fail("--open and --passwords exclude each other: leave out one of them")

@@ -24,7 +24,7 @@ SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 
 
 def doctor() -> None:
-    """Check the running system and print what is wrong: router, services, streams, versions, clocks, names of settings.
+    """Check the running system and print what is wrong: router, services, streams, versions, clocks, misspelt settings.
 
     Run this command when events are missing. Its exit code is 1 if it finds a problem.
     """

@@ -84,9 +84,10 @@ def msrc12(
 
 @app.command("bimacs")
 def bimacs(source: Source, out: Out) -> None:
-    """Import OptiTrack data of two hands and objects.
+    """Import OptiTrack motion capture of two hands and objects, labelled as in the KIT Bimanual Actions Dataset.
 
-    Each file becomes a recording with labelled segments of each hand.
+    The folder contains files such as subject0_take0.csv. Each file becomes a recording with labelled segments of each
+    hand.
     """
     _run(import_bimacs, source, out)
 

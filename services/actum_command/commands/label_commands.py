@@ -45,6 +45,7 @@ SegmentName = Annotated[
     ),
 ]
 Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action, such as wave")]
+NewLabel = Annotated[str, typer.Argument(metavar="LABEL", help="the new label of the segment, such as wave")]
 LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
 
@@ -95,7 +96,7 @@ def move(
         ),
     ] = None,
 ) -> None:
-    """Move the start or the end of a segment; the recorded answers of the classifier are not changed."""
+    """Move the start or the end of a segment; the answers of the classifier in the recording are not changed."""
     take, segment = _found(file, name)
     start_ns = _moved_to(start, segment.start_ns, take.first_ns)
     end_ns = _moved_to(end, segment.end_ns, take.first_ns)
@@ -107,7 +108,7 @@ def move(
 
 @app.command("delete")
 def delete(file: RecordingFile, name: SegmentName) -> None:
-    """Delete a segment: its start and end marks, its recorded answers, and the frames of the person who acts in it.
+    """Delete a segment: its start and end marks, the classifier's answers to it, and the frames of the person who acts.
 
     The frames stay if the segment has no label, or if another labelled segment of that person needs the same frames.
     """
@@ -121,8 +122,8 @@ def delete(file: RecordingFile, name: SegmentName) -> None:
 
 
 @app.command("relabel")
-def relabel(file: RecordingFile, name: SegmentName, label: Label) -> None:
-    """Change the label of a segment."""
+def relabel(file: RecordingFile, name: SegmentName, label: NewLabel) -> None:
+    """Change the label of a segment in a recording."""
     take, segment = _found(file, name)
     _refuse_length(label)
     with _editing(file):
@@ -143,7 +144,7 @@ def add(
     label: Label,
     agent: AgentOption = None,
 ) -> None:
-    """Label an action in a recording by its start and end, such as actum label add REC 12.3 14.1 wave."""
+    """Label an action in a recording by its start and end. Example: actum label add wave.mcap 12.3 14.1 wave."""
     take = _opened(file)
     _refuse_length(label)
     with _editing(file):

@@ -16,7 +16,8 @@ MOST_IDS = 1000  # as many as the largest family has
 def markers(
     output: Annotated[Path, typer.Option("-o", "--output", help="the PDF file to write")],
     family: Annotated[
-        str, typer.Option(help="the marker family to print, by its name in OpenCV; ignored with --board")
+        str,
+        typer.Option(help="the marker family (OpenCV dictionary) to print, such as DICT_4X4_50; ignored with --board"),
     ] = "DICT_4X4_50",
     ids: Annotated[
         str, typer.Option(help="ids of the markers to print, such as 1,2,3 or 0-9; ignored with --board")
@@ -63,6 +64,6 @@ def _numbers(text: str) -> list[int]:
         if not span:
             raise PatternError(f"--ids contains the range {part!r}: write its smaller number first, such as 0-9")
         if len(numbers) + len(span) > MOST_IDS:
-            raise PatternError(f"--ids names more than {MOST_IDS} ids: use fewer")
+            raise PatternError(f"--ids names more than {MOST_IDS} markers: name at most {MOST_IDS}")
         numbers += span
     return numbers

@@ -69,9 +69,9 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "which start and end marks of actions to store, chosen by who made them and separated by commas: "
-                "manual (people and other programs), simulator (the simulated scene), replay ('actum play'), auto (the "
-                "classifier); or all. Default: manual; with --times, none of them"
+                "store only the start and end marks that were made by these, separated by commas: manual (people and "
+                "other programs), simulator (the simulated scene), replay ('actum play'), auto (the classifier). all "
+                "stores every mark. Default: manual; with --times, none of these marks"
             )
         ),
     ] = None,
@@ -94,8 +94,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--events",
             help=(
-                "run as a service that keeps a history: it stores only events, final actions and start and end marks, "
-                "in files in the folder OUTPUT"
+                "run as a service that keeps a history: it stores only events, the classifier's answer to each action "
+                "once the action has ended, and start and end marks, in files in the folder OUTPUT"
             ),
         ),
     ] = False,
@@ -104,13 +104,12 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Record a sensor's streams, and the start and end marks of actions, to a file for training or for playing again.
 
-    With --label and --times, the recording is labelled automatically, such as actum record wave.mcap --label wave
-    --times 5.
+    With --label and --times, the recording is labelled automatically. Example: actum record wave.mcap --label wave
+    --times 5
 
     No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.
 
-    With --events, the command runs as a service that stores only events, final actions and marks, in the folder OUTPUT.
-    The --history options apply only with --events.
+    With --events, the command runs as a service that keeps a history of recognised actions in the folder OUTPUT.
     """
     if events:
         keep_events(output, arguments_of(HISTORY, given))
@@ -141,7 +140,10 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 
 def _fail_unfinished(output: Path, error: OSError) -> NoReturn:
     """Fail, naming what was stored before the error and what to do with it."""
-    left = f"; {unfinished(output)} holds what was stored: finish it with 'actum record {output} --finish'"
+    left = (
+        f"; the messages stored before this error are in {unfinished(output)}: turn this file into a recording with "
+        f"'actum record {output} --finish'"
+    )
     fail(f"{output} cannot be written ({error.strerror})" + (left if unfinished(output).exists() else ""))
 
 
@@ -151,7 +153,9 @@ def _finish(output: Path) -> None:
     try:
         count = finished(output)
     except FileNotFoundError:
-        fail(f"there is no unfinished recording {unfinished(output)}: give the name of a recording that broke off")
+        fail(
+            f"there is no unfinished recording {unfinished(output)}: give the name of a recording that was interrupted"
+        )
     except RecordingError as error:
         fail(
             f"{error.path} cannot be turned into a recording ({error.problem}) and was not changed: move or delete "
@@ -164,7 +168,7 @@ def _finish(output: Path) -> None:
             f"{output} cannot be written ({error.strerror}): solve this problem, then use --finish again; "
             f"{unfinished(output)} was not changed"
         )
-    say(f"{count} messages, up to where it breaks off, written to {output}")
+    say(f"{count} messages, all that the unfinished file holds, written to {output}")
 
 
 def _origins(marks: str | None, times: int | None) -> list[str] | None:
@@ -192,17 +196,22 @@ def _report_cuts(repeating: RepetitionRecorder, output: Path) -> None:
     if repeating.lacks_some:
         rewrite(output, unchanged, metadata={"excluded": "true"})
         say(
-            "left out of training, or uncut repetitions would be learnt as background: once it is mended, add --all",
+            "training leaves this recording out, because it would learn the missing repetitions as background; once "
+            "you have labelled them with 'actum label', train with --all",
             style="yellow",
         )
     if repeating.cuts is None or repeating.counter.first_ns is None:
-        say(f"this does not count, nothing was cut: {repeating.counter.why_none}, and record it again", style="red")
+        why = repeating.counter.why_none
+        say(f"no repetition was found in the recording: {why}, and record the action again", style="red")
         return
     for line in cut_lines(repeating.cuts, repeating.counter.first_ns):
         say(line)
     for doubt in repeating.cuts.doubts:
         say(doubt, style="yellow")
-    say(f"see them: actum label picture {output} -o {output.with_suffix('.png')}; mend them: actum label --help")
+    say(
+        f"to look at the repetitions: actum label picture {output} -o {output.with_suffix('.png')}; to correct them: "
+        "actum label --help"
+    )
 
 
 def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
@@ -211,17 +220,20 @@ def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
     for (origin, named), count in stream.actions.items():
         say(f"  {count} marked by {origin}, {'without a label' if named is None else f'labelled {named!r}'}")
     if stream.unended:
-        say(f"  without an end, so nothing is learnt from them: {', '.join(sorted(stream.unended))}", style="yellow")
+        say(
+            f"  marked without an end, so training does not use them: {', '.join(sorted(stream.unended))}",
+            style="yellow",
+        )
     for origin, count in (+stream.left_out).items():
-        say(f"  {count} marked by {origin} left out: --marks {origin} or --marks {ALL} takes such")
+        say(f"  {count} marked by {origin} not stored: to store them, use --marks {origin} or --marks {ALL}")
     if stream.counters.rejects:
         say(f"not stored: {_listed(stream.counters.rejects)} (the last: {stream.counters.last_error})", style="yellow")
     if stream.undecodable:
         say(f"not decodable: {stream.undecodable.total()} ({_listed(stream.undecodable)})", style="yellow")
     if not stream.stored:
-        say("nothing was stored: does the sensor's gateway run, on this sensor? See actum doctor", style="yellow")
+        say("nothing was stored: check with 'actum doctor' that a gateway runs for this sensor", style="yellow")
     elif label is not None and not stream.actions:
-        say(f"nothing of it is labelled {label!r}: mark starts and ends with actum segment toggle", style="yellow")
+        say(f"no action was marked, so nothing is labelled {label!r}: mark with 'actum segment toggle'", style="yellow")
 
 
 def _listed(counts: Counter[str]) -> str:

@@ -49,7 +49,8 @@ StampOption = Annotated[
     typer.Option(
         min=0,
         help=(
-            "time of the mark in nanoseconds, on the clock of the field stamp_ns of the sensor's messages; default: now"
+            "time of the mark in nanoseconds, on the clock that the sensor uses for the field 'stamp_ns' of its "
+            "messages; default: now"
         ),
     ),
 ]
@@ -82,14 +83,17 @@ def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
 @app.command()
 @with_router_flags
 def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
-    """Mark actions with the keyboard: Enter marks a start, Enter again the end and prints the answer, Ctrl-D quits."""
+    """Mark actions with the Enter key: first the start of an action, then its end. Ctrl-D quits.
+
+    After each end, the command prints which action was recognised.
+    """
     with connect() as client:
         answers, number = Answers(client), 0
         while _waits_for_enter(f"press Enter to start action {number + 1}, Ctrl-D to quit "):
             number += 1
             segment_id = f"toggle-{client.run}-{number}"
             _put(client, _mark("start", segment_id, agent=agent, hand=hand, label=label))
-            ended = _waits_for_enter("press Enter to end it ")
+            ended = _waits_for_enter(f"press Enter to end action {number} ")
             _put(client, _mark("end", segment_id))
             for line in answers.until(segment_id, interrupted=_enter_was_pressed):
                 console.print(line, soft_wrap=True)

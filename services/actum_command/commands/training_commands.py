@@ -38,26 +38,22 @@ from som_classifier.settings import Settings
 CLASSIFIER = "som_classifier"
 """The service that has the settings of the search."""
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of recordings")]
-PresetOption = Annotated[
-    str,
-    typer.Option(
-        metavar=f"<{'|'.join(PRESETS)}>",
-        help=(
-            f"kind of model to train: {PAPER.name} is the method of the paper that actum implements (Gharaee et al. "
-            f"2017); {DEFAULT.name} is more accurate"
-        ),
-    ),
-]
-SET_HELP = (
-    f"change a setting of --preset {PAPER.name}, such as origin=hips; may be repeated. axes, the directions of the "
-    "coordinate system: upright (default; vertical, and smoothed over time) or posture (along the body, computed anew "
-    "in each frame). origin, the point from which positions are measured: torso (default) or hips. attention, the "
-    f"body part whose joints are used: {', '.join(ATTENTIONS)} (default: moving, which is the part that moves most)"
+PRESET_HELP = (
+    f"kind of model to train: {PAPER.name} is the method of the paper that actum implements (Gharaee et al. 2017); "
+    f"{DEFAULT.name} is more accurate"
 )
+SET_HELP = (
+    f"change a setting of --preset {PAPER.name}; may be repeated. Settings: axes=upright (coordinate axes are vertical "
+    "and smoothed over time; default) or axes=posture (axes follow the body, computed anew in each frame); "
+    "origin=torso (positions are measured from the torso; default) or origin=hips; attention=PART, the body part whose "
+    f"joints are used: {', '.join(ATTENTIONS)} (default: moving, which is the part that moves most)"
+)
+SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
+UNTRAINED = "used only with --leave-one-person-out: "
+PRESETS_SHOWN = f"<{'|'.join(PRESETS)}>"
+PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HELP)]
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
-SeedOption = Annotated[
-    int, typer.Option(min=0, help="seed of the random numbers; the same seed and recordings give the same model")
-]
+SeedOption = Annotated[int, typer.Option(min=0, help=SEED_HELP)]
 
 
 def train_command(
@@ -128,9 +124,11 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
             ),
         ),
     ] = False,
-    preset: PresetOption = DEFAULT.name,
-    settings: SetOption = None,
-    seed: SeedOption = 0,
+    preset: Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=UNTRAINED + PRESET_HELP)] = DEFAULT.name,
+    settings: Annotated[
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=UNTRAINED + SET_HELP)
+    ] = None,
+    seed: Annotated[int, typer.Option(min=0, help=UNTRAINED + SEED_HELP)] = 0,
     with_excluded: AllOption = False,
 ) -> None:
     """Test how well actions are recognised in labelled recordings, and print the scores.

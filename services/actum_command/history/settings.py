@@ -11,26 +11,32 @@ class Settings(ServiceSettings):
     history_file_mb: float = Field(
         16.0,
         gt=0,
-        description="size of a file of the history (MB) at which the file is finished and the next one is started",
+        description=(
+            "only with 'actum record --events': size of a file of the history (MB) at which the file is finished and "
+            "the next file is started"
+        ),
     )
     history_file_hours: float = Field(
         24.0,
         gt=0,
-        description="maximum time that one file of the history covers (h); after this time the next file is started",
+        description=(
+            "only with 'actum record --events': maximum time that one file of the history covers (h); after this time "
+            "the next file is started"
+        ),
     )
     history_keep_files: int | None = Field(
         None,
         ge=1,
         description=(
-            "maximum number of finished files of the history; if there are more, the oldest are deleted. Default: all "
-            "files are kept"
+            "only with 'actum record --events': maximum number of finished files of the history; if there are more, "
+            "the oldest are deleted. Default: all files are kept"
         ),
     )
     history_keep_mb: float | None = Field(
         None,
         gt=0,
         description=(
-            "maximum total size of the finished files of the history (MB); if the total is larger, the oldest are "
-            "deleted. Default: all files are kept"
+            "only with 'actum record --events': maximum total size of the finished files of the history (MB); if the "
+            "total is larger, the oldest are deleted. Default: all files are kept"
         ),
     )

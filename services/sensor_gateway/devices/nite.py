@@ -102,7 +102,10 @@ class NiteCapture(OpenNi2Capture):
                 self._tracker = self._nite2.UserTracker(streams.device)
         except NiteError as error:
             streams.close()
-            raise CameraLostError(f"NiTE cannot track people with this camera ({error})") from None
+            raise CameraLostError(
+                f"NiTE, which finds people in depth images, cannot use this camera ({error}): unset NITE2_REDIST64 and "
+                "NITE2_REDIST and restart the gateway, which then finds people with the pose model"
+            ) from None
         return streams
 
     def _follow(self, user: int) -> None:

@@ -105,7 +105,9 @@ def _opened_file(openni2: Any, path: Path) -> Any:
     device = openni2.Device(os.fsencode(path.absolute()))
     if device.playback is None:
         device.close()
-        raise CameraLostError("OpenNI opened the file as a camera, not as a recording")
+        raise CameraLostError(
+            "a driver in OpenNI's folder opened the file as a camera, so OpenNI cannot play the file as a recording"
+        )
     device.playback.set_repeat_enabled(False)
     device.playback.set_speed(MANUAL)
     return device

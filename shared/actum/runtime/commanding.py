@@ -55,10 +55,12 @@ class Commander:
                     self._counters.reject("refused_command", str(refusal))
                 query.reply_err(packed({"error": str(refusal)}, encoding), encoding=encoding)
             except Exception as error:
-                query.reply_err(
-                    packed({"error": "a bug occurred in the service: see its log"}, encoding), encoding=encoding
+                problem = (
+                    "a bug occurred in the service while it carried out the command, so the command may be done only "
+                    "in part, and the service stops: report the bug with the last lines of the service's log"
                 )
-                self._end_at_bug(f"while handling the command {query.key_expr}", error)
+                query.reply_err(packed({"error": problem}, encoding), encoding=encoding)
+                self._end_at_bug(f"while the service carried out the command {query.key_expr}", error)
 
     def _asked(self, asked: zenoh.KeyExpr) -> list[str]:
         """Return the command's name as the last chunks of its key; none where the list of commands is asked for.

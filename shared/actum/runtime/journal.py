@@ -102,7 +102,7 @@ class Journal:
                 self.close()
                 self._begun_ns = time.time_ns()
                 self._opened()
-                lost = "the file was deleted, so the answers in it are lost; a new file was created"
+                lost = "the file was deleted, so the service's earlier answers are lost; the service made a new file"
                 raise FileNotFoundError(errno.ENOENT, lost, self._path)
             if self._is_stored:
                 return

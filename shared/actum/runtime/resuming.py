@@ -87,8 +87,9 @@ class Resumption:
         self._counters.reject("unwritable_state", reason)
         if self._writes:
             log.warning(
-                "answers cannot be written to the journal, so after a restart the same segments may get other "
-                "answers: %s",
+                "the file with the service's answers (actions or events) cannot be used: %s. After a restart the "
+                "service may therefore answer the same segments differently: check that the file is readable and "
+                "writable, and that the disk is not full",
                 reason,
             )
         self._writes = False

@@ -84,7 +84,11 @@ class Service(ABC):
         threading.excepthook = ended
 
     def _end_at_bug(self, where: str, error: BaseException, stop: threading.Event) -> None:
-        log.error("a bug occurred %s", where, exc_info=error)
+        log.error(
+            "the service stops, because a bug occurred %s: report the bug with the lines that follow",
+            where,
+            exc_info=error,
+        )
         self.failed = True
         stop.set()
 

@@ -16,7 +16,7 @@ def some_rows(vectors: ArrayLike) -> Array:
     """
     rows = numbers(vectors)
     if not len(rows):
-        raise ValueError("no vectors are given: measuring a map needs at least one vector")
+        raise ValueError("no input vectors are given, so the error of the map cannot be computed: give at least one")
     return rows
 
 

@@ -108,13 +108,13 @@ def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
     indices = np.array(order)
     if indices.ndim != 1 or (indices.size and not np.issubdtype(indices.dtype, np.integer)):
         raise ValueError(
-            f"the order has type {indices.dtype} and shape {indices.shape}; expected a list of row numbers, which are "
-            "integers"
+            f"the argument 'order' has type {indices.dtype} and shape {indices.shape}; expected a list of integers: "
+            "the row number of the vector to learn from in each step"
         )
     if indices.size and (indices.min() < 0 or indices.max() >= rows):
         raise ValueError(
-            f"the order contains the row numbers {indices.min()} to {indices.max()}; expected 0 to {rows - 1}, as "
-            f"there are {rows} rows"
+            f"the argument 'order' contains row numbers from {indices.min()} to {indices.max()}; expected row numbers "
+            f"from 0 to {rows - 1}, because there are {rows} vectors"
         )
     return indices.astype(np.intp)
 
