@@ -88,10 +88,13 @@ class Segmenter:
             used_up = self._answered.mark_again(mark, self._stamp_ns(mark) or 0)
             return [self._rejected(mark, "segment_id reused")] if used_up else []
         is_settling = self._is_resumed and (self._now_ns < 0 or self._now_ns - self._first_tick_ns < SETTLING_NS)
-        if mark.stamp_ns is None and is_settling:
-            self._answered.remember(mark.segment_id, None, None)
-            return [self._rejected(mark, UNPLACED)]
+        is_unplaced = mark.stamp_ns is None and is_settling
         match state, mark.kind:
+            case State.NEW, _ if is_unplaced:
+                self._answered.remember(mark.segment_id, None, None)
+                return [self._rejected(mark, UNPLACED)]
+            case State.OPEN, "end" if is_unplaced:
+                return [self._reject(self._open[mark.segment_id], UNPLACED)]
             case State.NEW, "start":
                 return self._start(mark)
             case State.NEW, "end":

@@ -97,3 +97,8 @@ def test_frames_that_were_never_captured_are_not_lost() -> None:
 def test_a_stream_that_ends_early_makes_it_a_rejection() -> None:
     run = Run().feed(*postures(30), mark("start", 0), mark("end", 60 * FRAME_NS)).wait(11.0)
     assert run.reasons == ["frames lost: none came for the last 1.0 s of the segment"]
+
+
+def test_an_end_without_a_stamp_just_after_a_restart_rejects_the_open_segment_once() -> None:
+    run = Run().remember().feed(*postures(10), mark("start", FRAME_NS), mark("end", None)).wait(64)
+    assert run.reasons == ["the classifier had only just started, so it could not date a mark without a stamp"]
