@@ -46,5 +46,5 @@ def test_u_matrix_is_the_mean_distance_to_the_neighbours() -> None:
 
 def test_no_vectors_measure_nothing() -> None:
     for measure in (line_map().quantization_error, line_map().topographic_error):
-        with pytest.raises(ValueError, match="no vectors"):
+        with pytest.raises(ValueError, match="no input vectors"):
             measure(np.zeros((0, 1)))
