@@ -86,7 +86,11 @@ def _of_command(command: Any, path: str) -> Iterator[str]:
     yield f"{path}: {' '.join((command.help or '').split())}"
     for parameter in command.params:
         if text := getattr(parameter, "help", None):
-            shown = parameter.opts[-1] if parameter.param_type_name == "option" else parameter.name.upper()
+            shown = (
+                parameter.opts[-1]
+                if parameter.param_type_name == "option"
+                else (parameter.metavar or parameter.name.upper())
+            )
             yield f"{path} {shown}: {text}"
     for name, each in getattr(command, "commands", {}).items():
         yield from _of_command(each, f"{path} {name}")

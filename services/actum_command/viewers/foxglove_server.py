@@ -70,7 +70,9 @@ class Client:
             wanted = {_number(each["id"]): _number(each["channelId"]) for each in request["subscriptions"]}
             with self._lock:
                 if len({*self._channels, *wanted}) > MOST_SUBSCRIPTIONS:
-                    raise ValueError(f"the client requests more than {MOST_SUBSCRIPTIONS} subscriptions")
+                    raise ValueError(
+                        f"the viewer requests more than {MOST_SUBSCRIPTIONS} topics: close some of its panels"
+                    )
                 self._channels.update(wanted)
             return True
         if request["op"] == "unsubscribe":
