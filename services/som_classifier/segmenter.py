@@ -90,16 +90,13 @@ class Segmenter:
         is_settling = self._is_resumed and (self._now_ns < 0 or self._now_ns - self._first_tick_ns < SETTLING_NS)
         is_unplaced = mark.stamp_ns is None and is_settling
         match state, mark.kind:
-            case State.NEW, _ if is_unplaced:
-                self._answered.remember(mark.segment_id, None, None)
-                return [self._rejected(mark, UNPLACED)]
+            case State.NEW, kind if is_unplaced or kind == "end":
+                self._answered.remember(mark.segment_id, None, None if is_unplaced else self._stamp_ns(mark) or 0)
+                return [self._rejected(mark, UNPLACED if is_unplaced else "end without start")]
+            case State.NEW, _:
+                return self._start(mark)
             case State.OPEN, "end" if is_unplaced:
                 return [self._reject(self._open[mark.segment_id], UNPLACED)]
-            case State.NEW, "start":
-                return self._start(mark)
-            case State.NEW, "end":
-                self._answered.remember(mark.segment_id, None, self._stamp_ns(mark) or 0)
-                return [self._rejected(mark, "end without start")]
             case State.OPEN, "end":
                 return self._end(self._open[mark.segment_id], self._stamp_ns(mark))
         self._counters.reject("duplicate_mark", f"second {mark.kind} of {mark.segment_id!r}")

@@ -20,7 +20,7 @@ def test_errors_of_services_of_commands_and_of_doctor_are_among_them(errors: set
 
 def test_helps_of_commands_of_their_options_and_of_settings_are_among_them() -> None:
     named = {text.partition(":")[0] for text in drawn_sentences.helps()}
-    assert {"actum label relabel", "actum label relabel FILE", "actum calibrate intrinsics --live"} <= named
+    assert {"actum label relabel", "actum label relabel REC", "actum calibrate intrinsics --live"} <= named
     assert {"actum up --camera-size", "python -m sensor_gateway --camera-size TEXT"} <= named
 
 
