@@ -5,7 +5,7 @@ from pathlib import Path as File
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
@@ -125,6 +125,7 @@ def world_from_camera(turn_rad: float, tilt_rad: float, place: tuple[float, floa
 angle = st.floats(-3.1, 3.1)
 
 
+@settings(max_examples=20)  # each one runs a whole scene
 @given(angle, angle, st.tuples(*[st.floats(-5.0, 5.0)] * 3))
 def test_the_fixed_frame_is_where_the_setting_has_it(turn: float, tilt: float, place: Place) -> None:
     transform = world_from_camera(turn, tilt, place)

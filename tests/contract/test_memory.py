@@ -11,7 +11,7 @@ from node_cases import CASES, CLASSIFIER, FINDING, NOON_NS, Case
 
 MINUTE_S = 60
 FILLED_S = 70
-LENGTH_S = 5 * MINUTE_S
+LENGTH_S = 3 * MINUTE_S
 RATE_HZ = 3
 
 
@@ -58,7 +58,7 @@ def traced() -> Iterator[None]:
     ids=lambda value: {False: "one person", True: "renumbered every second"}.get(value) or repr(value),
 )
 @pytest.mark.usefixtures("traced")
-def test_five_minutes_hold_no_more_than_the_first(case: Case, renumbered: bool) -> None:
+def test_three_minutes_hold_no_more_than_the_first(case: Case, renumbered: bool) -> None:
     node = case.build()
     begun = tracemalloc.get_traced_memory()[0]
     filled = held_after(node, minutes(case, 0, FILLED_S, renumbered)) - begun

@@ -107,7 +107,7 @@ def on_time(streams: dict[str, list[Message]]) -> list[Message]:
 
 KEYS = 6
 late = st.integers(0, SKEW_NS)
-patient = settings(max_examples=20, suppress_health_check=list(HealthCheck))
+patient = settings(max_examples=8, suppress_health_check=list(HealthCheck))
 
 
 def test_the_scene_has_everything_that_could_go_wrong(streams, on_time) -> None:
