@@ -164,7 +164,7 @@ class SomClassifier:
             yield partial_action(segment, recognition, frames, posture)
 
     def _found(self, found: SpottedSegment, stream: Stream, agent: int) -> Iterator[Message]:
-        """Mark and answer a segment that was found, unless it is not to be told; count what becomes of it."""
+        """Mark and answer a segment that was found, unless it is not to be published; count what becomes of it."""
         search = stream.search
         closed = stream.cut(OpenSegment(search.next_id, found.start_ns, agent, end_ns=found.end_ns))
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
@@ -180,7 +180,7 @@ class SomClassifier:
         """Decide what becomes of a segment that was found: `told`, or why it is not.
 
         The search knows no more of other doings than the background it was trained on; what it never saw the
-        recogniser may still call unknown. The user's options hold for the action that would be told.
+        recogniser may still call unknown. The user's options hold for the action that would be published.
         """
         if recognition is None:
             return "unanswerable"
@@ -191,7 +191,7 @@ class SomClassifier:
         return search.admission.admit(recognition.label, closed.start_ns, closed.end_ns) or "told"
 
     def _ongoing(self, ongoing: Ongoing, stream: Stream, posture: Posture) -> Iterator[Action]:
-        """Say what seems to be going on, unless it is marked or would not be told."""
+        """Say what seems to be going on, unless it is marked or would not be published."""
         search, bounds = stream.search, (ongoing.start_ns, posture.stamp_ns)
         hindrance = search.admission.hindrance(ongoing.label, ongoing.start_ns)
         if hindrance is None and not self._segmenter.is_marked(posture.agent, *bounds):

@@ -23,7 +23,7 @@ class Segmentation:
     Attributes:
         segments: which ones are answered.
         options: what is asked of the search.
-        enabled: the only actions that are told of those found; empty where all are.
+        enabled: the only actions that are published of those found; empty where all are.
     """
 
     segments: WantedSegments = "both"

@@ -38,7 +38,7 @@ Names = Annotated[frozenset[str], NoDecode, BeforeValidator(_names)]
 
 
 class Settings(ServiceSettings):
-    """What the classifier can be told beside what every service can."""
+    """The settings of the classifier, beside those of every service."""
 
     model: Path | None = Field(
         None,

@@ -1,4 +1,4 @@
-"""Whether a stream goes on or stands still, told by ticks alone: nobody can answer while a link is cut."""
+"""Whether a stream goes on or stands still, judged by ticks alone: nobody can answer while a link is cut."""
 
 from typing import Final
 

@@ -19,7 +19,7 @@ SETTLE_NS = 70 * SECOND_NS
 MOST_KEYS = 4096
 """Keys whose numbers are remembered: agents come and go with new ones, and the key silent for longest begins anew."""
 LONGEST_COMPLAINT = 500
-"""Characters told of an error or a state: it may quote a megabyte of input, and then nobody could read the status."""
+"""Characters reported of an error or a state: it may quote a megabyte of input, and nobody could read the status."""
 
 
 @dataclass(frozen=True)

@@ -87,7 +87,7 @@ def data_folder() -> Path:
 
 
 class ServiceSettings(BaseSettings):
-    """What every service can be told."""
+    """The settings of every service."""
 
     model_config = SettingsConfigDict(
         env_prefix="ACTUM_",

@@ -6,7 +6,7 @@ from actum.settings import ServiceSettings
 
 
 class Settings(ServiceSettings):
-    """What `actum record --events` can be told beside what every service can."""
+    """The settings of `actum record --events`, beside those of every service."""
 
     history_file_mb: float = Field(
         16.0,

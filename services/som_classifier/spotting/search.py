@@ -1,4 +1,4 @@
-"""The search for unmarked actions in one person's stream: its spotter, what of it is told, and the names it gives."""
+"""The search for unmarked actions in one person's stream: its spotter, what is published, and the ids of segments."""
 
 import hashlib
 from collections.abc import Callable
@@ -15,7 +15,7 @@ SESSION_DIGITS = 6
 
 
 Hindrance = Literal["disabled", "pause", "cooldown"]
-"""Why an action is not told: it is switched off, it began too soon after the one before, or after one of its own."""
+"""Why an action is not published: it is switched off, or began too soon after the one before or one of its label."""
 
 
 class Admission:
@@ -27,7 +27,7 @@ class Admission:
         self._told_ns: dict[str, int] = {}
 
     def hindrance(self, action: str, start_ns: int) -> Hindrance | None:
-        """Return why an action that begins at `start_ns` is not to be told; None where it is."""
+        """Return why an action that begins at `start_ns` is not to be published; None where it is."""
         if action in self.options.disabled:
             return "disabled"
         if _is_within(self.options.shortest_pause_s, self._done_ns, start_ns):
@@ -37,10 +37,10 @@ class Admission:
         return None
 
     def admit(self, action: str, start_ns: int, end_ns: int) -> Hindrance | None:
-        """Take the next action that has been done; return why it is not told, None where it is.
+        """Take the next action that has been done; return why it is not published, None where it is.
 
-        A pause is counted from the action before, told or not, but not from one that is switched off. A cooldown is
-        counted from the last one told: what is done without end is told again and again, at that interval.
+        A pause is counted from the action before, published or not, but not from one that is switched off. A cooldown
+        is counted from the last one published: what is done without end is published again at that interval.
         """
         hindrance = self.hindrance(action, start_ns)
         if hindrance != "disabled":
@@ -79,7 +79,7 @@ class Search:
     same whenever the same stream is searched, and differ where a service, a sensor or a person begins anew.
 
     Attributes:
-        admission: decides which of the actions found are told.
+        admission: decides which of the actions found are published.
     """
 
     def __init__(self, first: Posture, plan: SearchPlan) -> None:
@@ -94,7 +94,7 @@ class Search:
         return f"{self._stream_id}-{self._told + 1}"
 
     def count_told(self) -> None:
-        """Use up `next_id`, for a segment that is told."""
+        """Use up `next_id`, for a segment that is published."""
         self._told += 1
 
     def use(self, plan: SearchPlan) -> None:

@@ -69,9 +69,9 @@ class SpottingOptions:
     Attributes:
         false_alarms_per_min: how many wrong segments in a minute of other doings are accepted; more of them means fewer
             missed actions. None: what the model was trained for.
-        shortest_pause_s: an action that begins sooner after the one before it is not told.
-        cooldown_s: by action, how long after one of it no other of it is told.
-        disabled: actions that are not told.
+        shortest_pause_s: an action that begins sooner after the one before it is not published.
+        cooldown_s: by action, how long after one of it no other of it is published.
+        disabled: actions that are not published.
     """
 
     false_alarms_per_min: float | None = None

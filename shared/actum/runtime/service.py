@@ -52,8 +52,8 @@ class Service(ABC):
         if not place.claim(stop, settling_s):
             return
         queryables = self._queryables(session, stop)
-        told = (session, place, stop, self._healthy, self._store)
-        reporting = threading.Thread(target=self._reporter.report, args=told, name="reporting", daemon=True)
+        given = (session, place, stop, self._healthy, self._store)
+        reporting = threading.Thread(target=self._reporter.report, args=given, name="reporting", daemon=True)
         reporting.start()
         try:
             self._work(session, Outbox(session), stop, place.vacant_s)
