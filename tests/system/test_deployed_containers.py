@@ -168,6 +168,7 @@ def test_a_viewer_and_the_other_host_see_no_images_of_a_camera_that_makes_some(t
         taken.client("recorder", "camera") as recorder,
     ):
         *unseen, seen = (client.listen(f"actum/{client.sensor}/image/**") for client in (viewer, far, recorder))
+        taken.compose("camera", "up", "--detach", "--force-recreate", "sensor_gateway")
         wait_until(lambda: seen.receive() is not None, "an image for who may see them", HEALTHY_S)
         assert [each.receive() for each in unseen] == [None, None]
 
