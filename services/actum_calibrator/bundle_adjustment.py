@@ -88,11 +88,11 @@ class BundleAdjuster:
                 damping *= 10
             if np.abs(step).max() < SMALLEST_STEP or damping > MOST_DAMPING:
                 break
-        final, _gradient = self._normal_equations(parameters)
+        normal, _ = self._normal_equations(parameters)
         errors_px = self._errors(parameters)
         freedom = max(1, sum(map(len, errors_px)) - len(parameters))
         variance = sum(self._weight(errors) * errors.dot(errors) for errors in errors_px) / freedom
-        covariance = np.linalg.inv(final)[:6, :6] * variance
+        covariance = np.linalg.inv(normal)[:6, :6] * variance
         return BundleAdjustment(parameters[:6], [rms_px(errors) for errors in errors_px], covariance)
 
     def rms_px(self, people_from_markers: Array, markers_from_board: Array, pair: Pair) -> float:

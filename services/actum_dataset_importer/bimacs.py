@@ -116,12 +116,7 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         stamps_ns = [int(Decimal(row["stamp"]) * 10**9) for row in rows]
         postures = [_posture(row, ns, sensor, path.stem) for row, ns in zip(rows, stamps_ns, strict=True)]
         objects = _objects(rows, stamps_ns, sensor, path.stem)
-        bodies = _bodies(rows)
-        for label in labels:
-            if label.target is not None and label.target not in bodies:
-                raise ValueError(
-                    f"the labels name the object {OBJECTS[label.target]}, but the file has no columns for it"
-                )
+        _check_targets(labels, _bodies(rows))
         kept = [label for label in labels if label.first < label.last]
         marks = [m for i, label in enumerate(kept) for m in _marks(label, _id(path, label, i), stamps_ns, sensor)]
         truths = [t for i, label in enumerate(kept) for t in _truths(label, _id(path, label, i), stamps_ns, sensor)]
@@ -176,6 +171,12 @@ def _bodies(rows: Sequence[Row]) -> dict[int, str]:
     known = {name.replace(" ", ""): number for number, name in enumerate(OBJECTS)}
     bodies = [column.removesuffix(VALID) for column in rows[0] if column.endswith(VALID)] if rows else []
     return {known[name]: body for body in bodies if (name := body.lower().replace("_", "")) in known}
+
+
+def _check_targets(labels: Sequence[Label], bodies: Mapping[int, str]) -> None:
+    for label in labels:
+        if label.target is not None and label.target not in bodies:
+            raise ValueError(f"the labels name the object {OBJECTS[label.target]}, but the file has no columns for it")
 
 
 def _objects(rows: Sequence[Row], stamps_ns: Sequence[int], sensor: str, session_id: str) -> list[Objects]:

@@ -112,7 +112,7 @@ def mixed(pieces: Sequence[Piece], rng: np.random.Generator) -> list[Piece]:
 def _joined(pieces: Sequence[Piece], name: str, person: str, sensor: str) -> Take:
     pieces_m = [piece.joints_m for piece in pieces]
     moved = [piece_m.copy() for piece_m in pieces_m]
-    for piece_m in moved:
+    for piece_m in moved:  # each begins where the first one begins, or the person would jump
         piece_m[..., _HORIZONTAL] += (pieces_m[0][0, _TORSO] - piece_m[0, _TORSO])[_HORIZONTAL]
     frames = np.concatenate(list(_with_frames_between(moved)))
     lengths = [len(piece.joints_m) + JOINING_FRAMES for piece in pieces]

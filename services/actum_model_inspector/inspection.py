@@ -82,6 +82,17 @@ def _of_maps(maps: ModelMaps, segments: Sequence[AnsweredSegment]) -> Iterator[P
         "darker ground means that neighbours differ more. An action is a way across this map.",
         partial(posture_map, maps),
     )  # fmt: skip
+    yield from _of_movement_maps(maps, section)
+    yield Picture(
+        section, "action-map",
+        "The second layer. Every place belongs to the action whose neuron answers most to what falls there; like "
+        "actions are neighbours, and the paler, the closer the decision."
+        + (" Each dot is a segment; a ring marks a wrong answer." if segments else ""),
+        partial(action_map, maps, segments),
+    )  # fmt: skip
+
+
+def _of_movement_maps(maps: ModelMaps, section: str) -> Iterator[Picture]:
     if maps.velocities is not None:
         yield Picture(
             section, "movement-map",
@@ -96,13 +107,6 @@ def _of_maps(maps: ModelMaps, segments: Sequence[AnsweredSegment]) -> Iterator[P
             f"where it is going. {left}.",
             partial(arm_map, maps.arms, maps.mirrors),
         )  # fmt: skip
-    yield Picture(
-        section, "action-map",
-        "The second layer. Every place belongs to the action whose neuron answers most to what falls there; like "
-        "actions are neighbours, and the paler, the closer the decision."
-        + (" Each dot is a segment; a ring marks a wrong answer." if segments else ""),
-        partial(action_map, maps, segments),
-    )  # fmt: skip
 
 
 def _of_answers(segments: Sequence[AnsweredSegment], evaluation: Evaluation) -> Iterator[Picture]:

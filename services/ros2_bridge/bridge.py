@@ -28,6 +28,7 @@ class Ros2Bridge:
     def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
         self._settings = settings
+        # with ros_frame_id the frames are the robot's, and the robot publishes where they lie
         self._camera_published = settings.ros_frame_id is not None
 
     def foreign_node(self, session_id: str) -> ForeignNode:

@@ -34,10 +34,10 @@ class Optics:
         return SAME_CAMERA if calibrated is None else calibrated
 
     def unmirrored(self, picture: Picture) -> Picture:
-        """Flip a mirror image back, in which hands would be exchanged and markers could not be read."""
-        return (
-            replace(picture, image_bgr=np.ascontiguousarray(picture.image_bgr[:, ::-1])) if self.mirrored else picture
-        )
+        """Return a picture, flipped back if the camera mirrors its images: no marker can be read in a mirror image."""
+        if not self.mirrored:
+            return picture
+        return replace(picture, image_bgr=np.ascontiguousarray(picture.image_bgr[:, ::-1]))
 
     def lens_of(self, picture: Picture) -> Lens | None:
         """Return the lens a picture was taken with; None where another size was calibrated."""

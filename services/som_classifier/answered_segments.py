@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from actum.messages import Action, Segment
 from actum.node import Counters
-from som_classifier.segments import State
+from som_classifier.segments import SegmentState
 
 REMEMBERED = 10_000
 """Segment ids kept: hours of actions, in a few megabytes."""
@@ -24,7 +24,7 @@ class _Answered:
 
     start_ns: int | None
     end_ns: int | None
-    state: State = State.ANSWERED
+    state: SegmentState = SegmentState.ANSWERED
     awaited: set[str] = field(default_factory=set)
 
     def stamp_ns(self, kind: str) -> int | None:
@@ -39,22 +39,22 @@ class AnsweredSegments:
         self._counters = counters
         self._answered: OrderedDict[str, _Answered] = OrderedDict()
 
-    def state(self, mark: Segment) -> State:
+    def state(self, mark: Segment) -> SegmentState:
         """Return how far the segment of a mark has come; `NEW` where it is not answered.
 
         Of a former segment are the marks with its stamps, and the end mark where it was given up without one.
         """
         answered = self._answered.get(mark.segment_id)
         if answered is None:
-            return State.NEW
+            return SegmentState.NEW
         known_ns = answered.stamp_ns(mark.kind)
         own = mark.kind == "end" if known_ns is None else mark.stamp_ns == known_ns
-        return answered.state if own or answered.state is not State.FORMER else State.NEW
+        return answered.state if own or answered.state is not SegmentState.FORMER else SegmentState.NEW
 
     def end_session(self) -> None:
         """Note that the source has started anew: ids may be used again, and marks of before may still come."""
         for answered in self._answered.values():
-            answered.awaited, answered.state = {"start", "end"}, State.FORMER
+            answered.awaited, answered.state = {"start", "end"}, SegmentState.FORMER
 
     def remember(self, segment_id: str, start_ns: int | None, end_ns: int | None) -> None:
         """Add a segment that has just been answered."""
@@ -62,7 +62,7 @@ class AnsweredSegments:
 
     def recall(self, answer: Action) -> None:
         """Add a segment that was answered before this process was there; a second one of an id has used it up."""
-        state = State.USED_UP if answer.segment_id in self._answered else State.ANSWERED
+        state = SegmentState.USED_UP if answer.segment_id in self._answered else SegmentState.ANSWERED
         end_ns = answer.end_ns if answer.valid or answer.end_ns != answer.start_ns else None
         self._add(answer.segment_id, _Answered(answer.start_ns, end_ns, state, {"start", "end"}))
 
@@ -86,16 +86,16 @@ class AnsweredSegments:
         if mark.kind in answered.awaited and (mark.stamp_ns in (None, known_ns) or (is_end and known_ns is None)):
             answered.awaited.remove(mark.kind)
             self._counters.counts["marks_told_again"] += 1
-        elif is_end and known_ns is None and mark.stamp_ns is not None and answered.state is not State.USED_UP:
+        elif is_end and known_ns is None and mark.stamp_ns is not None and answered.state is not SegmentState.USED_UP:
             self._counters.reject("late", f"end of {mark.segment_id!r} after it was given up")
         elif (mark.stamp_ns is not None and mark.stamp_ns == known_ns) or (
-            is_end and (mark.stamp_ns is None or answered.state is State.USED_UP)
+            is_end and (mark.stamp_ns is None or answered.state is SegmentState.USED_UP)
         ):
             self._counters.reject("duplicate_mark", f"{mark.kind} of the answered segment {mark.segment_id!r}")
-        elif mark.stamp_ns is None and answered.state is State.USED_UP:
+        elif mark.stamp_ns is None and answered.state is SegmentState.USED_UP:
             self._counters.reject("duplicate_mark", f"{mark.segment_id!r} is used up")
         else:
-            answered.state = State.USED_UP
+            answered.state = SegmentState.USED_UP
             answered.start_ns = answered.start_ns if is_end else stamp_ns
             return True
         return False

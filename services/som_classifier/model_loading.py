@@ -52,7 +52,8 @@ def load_model(path: Path) -> Model:
     """Load the model from a file that `Model.save` wrote.
 
     Raises:
-        ModelError: the file is missing, foreign, damaged, or of another version of actum that made it otherwise.
+        ModelError: the file is missing, foreign or damaged, or another version of actum made it and this one cannot use
+            it.
     """
     try:
         if path.exists() and not path.is_file():

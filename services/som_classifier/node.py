@@ -206,10 +206,11 @@ class SomClassifier:
     def _final(self, closed: ClosedSegment) -> Action:
         recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
         reason = closed.reason
-        if reason is None and recognition is None:
+        if reason is None and self._model is None:
+            reason = "no model"
+        elif reason is None and self._model is not None and recognition is None:
             frames = sum(frame.valid for frame in closed.frames)
-            least = 0 if self._model is None else self._model.min_frames
-            reason = f"too few frames: {frames}, at least {least} are needed" if least else "no model"
+            reason = f"too few frames: {frames}, at least {self._model.min_frames} are needed"
         if reason:
             self.counters.reject("rejected_segment", f"{closed.segment_id}: {reason}")
         return self._answer(closed, recognition, reason)

@@ -1,7 +1,7 @@
 """Cuts postures into segments by marks: whose, from when to when, with which frames, or why not.
 
 A segment closes once its posture stream has reached the end, or after two seconds of waiting for it; while nobody's
-postures come, as when a link is cut, after ten. `som_classifier.segments.State` lists the states of a segment.
+postures come, as when a link is cut, after ten. `som_classifier.segments.SegmentState` lists the states of a segment.
 """
 
 from collections import deque
@@ -15,7 +15,7 @@ from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
 from som_classifier.answered_segments import AnsweredSegments
 from som_classifier.frames import Frame
-from som_classifier.segments import ClosedSegment, OpenSegment, State, with_cause
+from som_classifier.segments import ClosedSegment, OpenSegment, SegmentState, with_cause
 from som_classifier.streams import Streams
 
 MARKED = 256
@@ -77,27 +77,27 @@ class Segmenter:
         for segment in self._open.values():
             if segment.start_ns is None:
                 segment.start_ns = posture.stamp_ns
-            if segment.state is State.OPEN and segment.start_ns <= posture.stamp_ns:
+            if segment.state is SegmentState.OPEN and segment.start_ns <= posture.stamp_ns:
                 segment.waiting_since_ns = None
         return frame, closed + self._settle()
 
     def mark(self, mark: Segment) -> list[ClosedSegment]:
         """Take a start or end mark; return the segments it closes."""
         state = self._state(mark)
-        if state not in (State.NEW, State.OPEN, State.ENDED):
+        if state not in (SegmentState.NEW, SegmentState.OPEN, SegmentState.ENDED):
             used_up = self._answered.mark_again(mark, self._stamp_ns(mark) or 0)
             return [self._rejected(mark, "segment_id reused")] if used_up else []
         is_settling = self._is_resumed and (self._now_ns < 0 or self._now_ns - self._first_tick_ns < SETTLING_NS)
         is_unplaced = mark.stamp_ns is None and is_settling
         match state, mark.kind:
-            case State.NEW, kind if is_unplaced or kind == "end":
+            case SegmentState.NEW, kind if is_unplaced or kind == "end":
                 self._answered.remember(mark.segment_id, None, None if is_unplaced else self._stamp_ns(mark) or 0)
                 return [self._rejected(mark, UNPLACED if is_unplaced else "end without start")]
-            case State.NEW, _:
+            case SegmentState.NEW, _:
                 return self._start(mark)
-            case State.OPEN, "end" if is_unplaced:
+            case SegmentState.OPEN, "end" if is_unplaced:
                 return [self._reject(self._open[mark.segment_id], UNPLACED)]
-            case State.OPEN, "end":
+            case SegmentState.OPEN, "end":
                 return self._end(self._open[mark.segment_id], self._stamp_ns(mark))
         self._counters.reject("duplicate_mark", f"second {mark.kind} of {mark.segment_id!r}")
         return []
@@ -105,9 +105,9 @@ class Segmenter:
     def decline(self, mark: Segment, reason: str) -> list[ClosedSegment]:
         """Reject a segment at its first mark, unless it is open already; return the segments that this closes."""
         match self._state(mark):
-            case State.OPEN | State.ENDED:
+            case SegmentState.OPEN | SegmentState.ENDED:
                 return self.mark(mark)
-            case State.NEW:
+            case SegmentState.NEW:
                 self._answered.remember(mark.segment_id, None, None)
                 return [self._rejected(mark, reason)]
         return []
@@ -122,9 +122,9 @@ class Segmenter:
             if segment.waiting_since_ns is None:
                 segment.waiting_since_ns = tick.monotonic_ns
             waited_ns = tick.monotonic_ns - segment.waiting_since_ns
-            if segment.state is State.OPEN and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
+            if segment.state is SegmentState.OPEN and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
                 closed.append(self._reject(segment, self._why_no_end(segment)))
-            if segment.state is State.ENDED and waited_ns > MAX_SKEW_NS:
+            if segment.state is SegmentState.ENDED and waited_ns > MAX_SKEW_NS:
                 newest_ns = self.streams.newest_ns
                 passed = newest_ns is not None and newest_ns >= segment.latest_ns
                 if passed or self._flow.ended(segment.waiting_since_ns, MAX_SKEW_NS):
@@ -145,7 +145,7 @@ class Segmenter:
             for segment in chain(self._open.values(), self._marked)
         )
 
-    def _state(self, mark: Segment) -> State:
+    def _state(self, mark: Segment) -> SegmentState:
         segment = self._open.get(mark.segment_id)
         return self._answered.state(mark) if segment is None else segment.state
 
@@ -164,9 +164,9 @@ class Segmenter:
                 segment.nearest = self.streams.nearest(segment.start_ns, segment.latest_ns)
             agent = segment.known_agent
             reached = agent is not None and self.streams.reached(agent, segment.latest_ns)
-            if segment.state is State.OPEN and segment.is_too_long(self.streams.newest_ns):
+            if segment.state is SegmentState.OPEN and segment.is_too_long(self.streams.newest_ns):
                 closed.append(self._reject(segment, NO_END))
-            elif segment.state is State.ENDED and reached and self._why_incomplete(segment) is None:
+            elif segment.state is SegmentState.ENDED and reached and self._why_incomplete(segment) is None:
                 closed.append(self._close(segment))
         return closed
 
@@ -245,6 +245,8 @@ class Segmenter:
 
     def _close_all(self) -> list[ClosedSegment]:
         return [
-            self._reject(segment, "the source started anew") if segment.state is State.OPEN else self._close(segment)
+            self._reject(segment, "the source started anew")
+            if segment.state is SegmentState.OPEN
+            else self._close(segment)
             for segment in list(self._open.values())
         ]

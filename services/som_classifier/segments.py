@@ -14,14 +14,17 @@ LONGEST_WHY = 500
 """Characters of a frame's reason that a segment's reason quotes: a source may send a text of any length."""
 
 
-class State(Enum):
-    """How far the segment of an id has come. `Segmenter` makes each transition in the method that is named here.
+class SegmentState(Enum):
+    """How far the segment of an id has come. Each transition is made in the method that is named here.
 
-    - `NEW` → `OPEN` by a start mark, `ANSWERED` by a mark that cannot be used: `Segmenter.mark`
-    - `OPEN` → `ENDED` by an end mark: `Segmenter.mark`
+    - `NEW` → `OPEN` by a start mark: `Segmenter.mark`
+    - `NEW` → `ANSWERED` by a mark that cannot be used: `Segmenter.mark`; by one that is not wanted:
+      `Segmenter.decline`; by an answer of an earlier process: `AnsweredSegments.recall`
+    - `OPEN` → `ENDED` by an end mark, → `ANSWERED` by one that cannot be used: `Segmenter.mark`
     - `OPEN`, `ENDED` → `ANSWERED` by frames: `Segmenter._settle`; by waiting: `Segmenter.tick`; by a restart of the
       source: `Segmenter._close_all`
-    - `ANSWERED` → `USED_UP` by another mark: `AnsweredSegments.mark_again`
+    - `ANSWERED` → `USED_UP` by another mark: `AnsweredSegments.mark_again`; by a second answer of an earlier process:
+      `AnsweredSegments.recall`
     - `ANSWERED`, `USED_UP` → `FORMER` by another session: `AnsweredSegments.end_session`
     - `FORMER` → `NEW` by a mark that is not one of the former segment: `AnsweredSegments.state`
     """
@@ -64,9 +67,9 @@ class OpenSegment:
         return cls(mark.segment_id, start_ns, mark.agent, mark.hand, mark.label)
 
     @property
-    def state(self) -> State:
+    def state(self) -> SegmentState:
         """`OPEN` until the end mark, then `ENDED`."""
-        return State.OPEN if self.end_ns is None else State.ENDED
+        return SegmentState.OPEN if self.end_ns is None else SegmentState.ENDED
 
     @property
     def known_agent(self) -> int | None:

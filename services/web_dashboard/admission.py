@@ -79,7 +79,7 @@ class Admission:
         if self._rule.token is None or self._has_cookie(scope, headers):
             return None
         given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[0]
-        if scope["type"] == "http" and hmac.compare_digest(given.encode(), (self._rule.token or "").encode()):
+        if scope["type"] == "http" and hmac.compare_digest(given.encode(), self._rule.token.encode()):
             answer = RedirectResponse("/", status_code=303)
             answer.set_cookie(_cookie_name(scope), self._secret, httponly=True, samesite="strict", max_age=30 * 86400)
             return answer

@@ -96,7 +96,11 @@ def _by_gradients_if_large(pixels: Pixels, corners: Array) -> Array:
 
 
 def _by_edges(pixels: Pixels, corners: Array, fits: int) -> Array:
-    """Fit each side by t(s) = c0 + c1 s + c2 s², s from -1 to 1 along it, t outwards; intersect the end tangents."""
+    """Fit each side by t(s) = c0 + c1 s + c2 s², s from -1 to 1 along it, t outwards; intersect the end tangents.
+
+    In each profile across a side, the edge is the centroid of the squared rise from inside to outside, weighted by
+    contrast.
+    """
     length = np.maximum(_sides_px(corners), SINGULAR)
     along = (corners[:, NEXT] - corners) / length[..., None]
     outward = np.stack([along[..., 1], -along[..., 0]], axis=-1)

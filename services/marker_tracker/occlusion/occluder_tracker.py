@@ -50,7 +50,7 @@ LOG_SCALE_NOISE = 0.02
 LOG_SCALE_PER_S2 = 5.0
 """Growth of that error with time, as an acceleration: arms reach that towards the camera."""
 OVERLAP_SIDES = 0.5
-"""Distance of centres in sides below which another marker covers a marker's place."""
+"""Distance of centres in sides below which another marker covers a marker's place: an object lies on it, no hand."""
 
 
 @dataclass(frozen=True)

@@ -86,8 +86,9 @@ class LiveCapture:
             done, image = capture.read()
             if not done:
                 return "it gives no more pictures"
+            picture = Picture(image.astype(np.uint8, copy=False), steady_clock.now_ns())
             with self._changed:
-                self._newest = Picture(image.astype(np.uint8, copy=False), steady_clock.now_ns())
+                self._newest = picture
                 self._silence.heard()
                 self._changed.notify_all()
         return "it was closed"

@@ -172,9 +172,10 @@ def _surfaces(body: _Body, depth_m: DepthImage, low_m: Array, high_m: Array) -> 
     """
     surfaces = np.full(len(JOINTS), np.nan)
     for i in np.flatnonzero(body.confidence >= LEAST_VISIBLE):
+        low, high = max(float(low_m[i]), 0.0), float(high_m[i])
         for window in WINDOWS:
             values = _window(depth_m, body.pixels[i], window * body.radius_px[i])
-            near = values[(values > max(low_m[i], 0.0)) & (values < high_m[i])]
+            near = values[(values > low) & (values < high)]
             if len(near) and not _IN_TRUNK[i]:  # a limb may be narrower than its window: no mixed values, no background
                 near = near[near <= np.quantile(near, NEAREST_QUANTILE) + LIMB_DEPTH_M]
             if len(near) >= max(LEAST_PIXELS, LEAST_SHARE * values.size):

@@ -73,7 +73,8 @@ def posed(landmarks: Landmarks, rays: Array, scale: float = 1.0) -> Array:
     The translation t minimises Σ w² ‖(p + t)_xy - r (p + t)_z‖² over rotated points p, their rays r and visibility w.
 
     Raises:
-        PlacingError: the best translation puts a landmark behind the camera or nearer than `NEAREST_M`.
+        PlacingError: the best translation puts a landmark behind the camera or nearer than `NEAREST_M`, or the trunk of
+            a flat body has no length in the image.
     """
     world_m = flat(landmarks, rays) if landmarks.world_m is None else landmarks.world_m
     weights = np.maximum(landmarks.visibility, LEAST_WEIGHT)
@@ -99,7 +100,7 @@ def flat(landmarks: Landmarks, rays: Array) -> Array:
     joints = landmarks.joints(rays)
     trunk = np.linalg.norm(joints[INDEX["neck"]] - joints[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0))
     if not trunk > 0:
-        raise PlacingError("the trunk has no length in the image, so it tells no distance")
+        raise PlacingError("the trunk has no length in the image, so the person's distance cannot be estimated")
     sight = np.average(rays, axis=0, weights=np.maximum(landmarks.visibility, LEAST_WEIGHT))
     return np.column_stack([(rays - sight) * TRUNK_M / trunk, np.zeros(len(rays))]) @ rotation_to_ray(sight)
 

@@ -4,8 +4,8 @@ The search uses only past postures and their stamps, so live and replayed stream
 
 1. Windows. Ten times a second, the search scores eight windows that end with the newest frame. Their durations are
    quantiles (4 % to 96 %) of the durations of the labelled actions.
-2. Completeness. One linear head per action estimates how complete that action is in the window: 1 if the window is
-   exactly the action, 0 below an overlap of a quarter (intersection over union), linear in between.
+2. Completeness. One linear head per action estimates how complete that action is in the window: 1 from an overlap
+   (intersection over union) of 0.85 on, 0 up to an overlap of 0.25, linear in between.
 3. Gain. A window gains (completeness + weight * log-likelihood of its duration - threshold) * duration, with log-normal
    durations. Negative gains are dropped.
 4. Decoding. The search takes the set of disjoint windows with the largest total gain (segmental Viterbi on a

@@ -125,11 +125,10 @@ class PyramidSpotter(Spotter):
         candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
         decided = self._decoder.step(now_ns, candidates)
         self._ongoing = self._likeliest(starts_ns.tolist(), now_ns, completeness)
-        first_ns = [self._recent.between(each.start_ns, each.end_ns)[0].stamp_ns for each in decided]
-        segments = (
-            SpottedSegment(start_ns, each.end_ns, self._labels[each.action])
-            for start_ns, each in zip(first_ns, decided, strict=True)
-        )
+        segments = []
+        for each in decided:
+            first = self._recent.between(each.start_ns, each.end_ns)[0]
+            segments.append(SpottedSegment(first.stamp_ns, each.end_ns, self._labels[each.action]))
         return Spotted(tuple(segments), self._ongoing)
 
     def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
