@@ -105,7 +105,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
     """Return the README of a host, whose credentials are valid until a day."""
     running = list(programs(deployment, host))
     rows = [f"| `{each.name}` | {each.about} | {each.sensor} |" for each in running]
-    renewed = CREDENTIALS * deployment.secured, ROUTER_FILE * (host in deployment.routers), UNITS
+    of_router = [ROUTER_FILE] if host in deployment.routers else []
     return README.format(
         name=host.name,
         address=host.address,
@@ -120,7 +120,7 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
         installed=INSTALLED,
         venv=VENV,
         install=pip_install("all", WHEEL),
-        renewed=" ".join(filter(None, renewed)),
+        renewed=" ".join([*([CREDENTIALS] if deployment.secured else []), *of_router, UNITS]),
         units=UNITS,
         users=USERS,
         owners=OWNERS,
@@ -144,6 +144,6 @@ def _link(deployment: Deployment, host: Host) -> str:
     later = [each.name for each in deployment.hosts if each != host and each not in earlier]
     reached = f"TCP port {host.port} has to be reachable from {', '.join(later)}." if later else ""
     dialled = f"The router connects to {', '.join(f'{each.name} at {each.endpoint}' for each in earlier)}."
-    cross = deployment.images_cross or not deployment.secured  # only access control keeps them
+    cross = deployment.images_cross or not deployment.secured  # nothing but access control holds images back
     images = "Images go from host to host." if cross else "Images do not leave the camera's host."
     return " ".join(filter(None, [reached, dialled if earlier else "", images]))

@@ -33,9 +33,9 @@ class Marking:
 
 
 def marking_of(cuts: Cuts, asked: int | None, label: str, sensor: str) -> Marking:
-    """Mark what was cut.
+    """Return the marks of what was cut, what may be wrong with them, and the uncut parts.
 
-    Where the cuts are sure and as many as were asked for, all other movement is background.
+    There are no uncut parts where the cuts are sure and as many as were asked for: all other movement is background.
     """
     names = list(islice(free_names((), CUT), len(cuts.repetitions)))
     doubts: dict[str, list[str]] = {}
@@ -64,9 +64,12 @@ def free_names(taken: Collection[str], stem: str) -> Iterator[str]:
 
 
 def finish_take(recorder: Recorder, marking: Marking) -> Path:
-    """Close the recorder of a take's frames, store the marks, and return the take's path.
+    """Finish a take: close its recorder, store marks and doubts, and remove whoever acts from the uncut parts.
+
+    Return the path of the take.
 
     Raises:
+        RecordingError: the file cannot be read back.
         OSError: the file cannot be written.
     """
     recorder.close()

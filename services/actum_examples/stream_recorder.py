@@ -83,7 +83,7 @@ class StreamRecorder:
         self.undecodable[error.kind] += 1
 
     def close(self) -> None:
-        """Store the marks that no final action has resolved; one that came before any frame is counted and dropped."""
+        """Store the marks that still wait; one without an answer that came before any frame is counted and dropped."""
         self._place(self._marks.close())
 
     def _take_mark(self, mark: Segment, received_ns: int) -> None:

@@ -43,7 +43,10 @@ class Pending:
         return self.since_ns + (SETTLE_NS if self.late_for is None else MAX_SKEW_NS)
 
     def placed(self, bounds: Bounds | None) -> "Placed":
-        """Give the mark the stamp of its segment's answer; else that of the newest frame; else the answer's start."""
+        """Return the mark with a stamp, and since when it has waited (ns).
+
+        The stamp is the answer's for this mark, else the newest frame's, else the answer's start.
+        """
         answered_ns = None if bounds is None else bounds.stamp_ns(self.mark)
         known_ns = [answered_ns, self.newest_ns, None if bounds is None else bounds.start_ns]
         stamp_ns = next((each for each in known_ns if each is not None), None)

@@ -92,13 +92,24 @@ class ModelStore:
         return self.get(model.id)
 
     def activate(self, model_id: str) -> None:
-        """Put a model in the place of the one that the classifier uses.
+        """Put a model in the place of the one in use and of the one that was taught last, of which copies stay.
 
         Raises:
-            Refusal: there is none of that id.
-            OSError: the file cannot be written.
+            Refusal: the model cannot be loaded, or one of those is none that could be returned to.
+            OSError: a file cannot be written, or no copy of it be kept.
         """
-        self._put(model_id)
+        path = self.get(model_id).path
+        try:
+            load_model(path)
+        except ModelError as error:
+            raise Refusal(str(error)) from None
+        self.look()
+        places = dict.fromkeys((self._taught, self._watched))
+        for place in places:
+            self._spare(place)
+        for place in places:
+            copy(path, place)
+        self.look()
 
     def undo(self) -> None:
         """Return to the model that was in use before.
@@ -110,7 +121,7 @@ class ModelStore:
         before = self.before
         if not before:
             raise Refusal("there is no previous model to return to")
-        self._put(before[-1])
+        self.activate(before[-1])
         self._remember(before[:-1])
 
     def delete(self, model_id: str) -> None:
@@ -168,26 +179,6 @@ class ModelStore:
                 self.add(file, "", {})
             except (ModelError, Refusal) as error:  # it was replaced meanwhile, or nothing can be read here
                 raise OSError(str(error)) from None
-
-    def _put(self, model_id: str) -> None:
-        """Put a model in the place of the one in use and of the one that was taught last, of which copies stay.
-
-        Raises:
-            Refusal: the model cannot be loaded, or one of those is none that could be returned to.
-            OSError: a file cannot be written, or no copy of it be kept.
-        """
-        path = self.get(model_id).path
-        try:
-            load_model(path)
-        except ModelError as error:
-            raise Refusal(str(error)) from None
-        self.look()
-        places = dict.fromkeys((self._taught, self._watched))
-        for place in places:
-            self._spare(place)
-        for place in places:
-            copy(path, place)
-        self.look()
 
     def _spare(self, place: Path) -> None:
         """Keep a copy of the model in a file that is to be replaced.

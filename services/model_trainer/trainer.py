@@ -95,7 +95,7 @@ class ModelTrainer:
     def commands(self) -> tuple[Command[Any, Any], ...]:
         """What can be asked."""
         groups = (self._set_commands, self._takes, self._examples, self._jobs, self._model_commands)
-        own = Command("state", NoFields, State, self._reply)
+        own = Command("state", NoFields, State, self._describe)
         return (own, *(refusing(command) for group in groups for command in group.commands))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
@@ -138,8 +138,8 @@ class ModelTrainer:
         if self._original is not None and (problem := self._original.copy_changed()) is not None:
             self.counters.reject("bad_model", problem)
 
-    def _reply(self, _: NoFields) -> State:
-        """Tell what is recorded, which job runs, and which model is in use."""
+    def _describe(self, _: NoFields) -> State:
+        """Return what is recorded, which job runs, and which model is in use."""
         return State.model_validate(self._state().model_dump(include=set(State.model_fields)))
 
     def _state(self) -> Training:

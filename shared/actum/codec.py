@@ -151,10 +151,7 @@ def unpack(payload: bytes) -> Any:
         nonlocal left
         left -= 1 + len(container)
         if left < 0:
-            raise ValueError(
-                f"the message contains more than {MOST_VALUES} values (numbers, texts, lists and maps, also nested "
-                "ones), so it is refused: send fewer values per message"
-            )
+            raise ValueError(f"more than {MOST_VALUES} values in a message, nested ones included")
         return container
 
     return msgpack.unpackb(

@@ -143,7 +143,7 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
     except UNPACK_ERRORS as error:
         raise Refusal(
             f"the request cannot be decoded ({error}): send a JSON object, or a MessagePack map with the encoding "
-            f"{MSGPACK}"
+            f"{MSGPACK}, with each name once and at most {MOST_VALUES} values"
         ) from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
         raise Refusal(
@@ -155,10 +155,7 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
 def _from_json(payload: bytes) -> Any:
     """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
     if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
-        raise ValueError(
-            f"the request contains more than {MOST_VALUES} values (numbers, texts, lists and objects, also nested "
-            "ones), so it is refused: send fewer values per request"
-        )
+        raise ValueError(f"more than {MOST_VALUES} values in a message, nested ones included")
     return json.loads(payload, object_pairs_hook=with_different_names)
 
 

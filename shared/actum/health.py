@@ -26,7 +26,7 @@ class HealthFile:
         self._unwritable = False
 
     def write(self, healthy: bool) -> None:
-        """Touch the file of a process that works and has a router; remove the file of any other process.
+        """Touch the file where this process works and has a router (`healthy`); remove it otherwise.
 
         Its time of modification is the monotonic clock's, which processes of one machine share: the wall clock may be
         set.

@@ -1,4 +1,4 @@
-"""What is kept of a stream, and what of a segment is lost: an answer to the rest of a segment may be wrong."""
+"""Keeps the newest samples of a stream, and measures the longest part of a segment whose samples are lost."""
 
 from collections import deque
 from collections.abc import Iterable, Iterator
@@ -9,7 +9,7 @@ from actum.node import SECOND_NS
 LOST_NS = SECOND_NS // 2
 """A lost part of a segment that is no longer than this (ns) hardly matters: it is interpolated well enough."""
 LOST_SHARE = 0.25
-"""Nor does a lost part of no more than this share of the segment: most of the action is left."""
+"""A lost part of no more than this share of the segment hardly matters either: most of the action is left."""
 MOST_ANSWERED = 16
 """Number of answered segments that are remembered of a stream, to recognise samples that come too late for them."""
 

@@ -15,11 +15,11 @@ class State(StrEnum):
     UNKNOWN_ACTIONS = "settings name actions that the model does not know"
 
     def because(self, detail: str) -> str:
-        """Return the text of this state with what it is due to."""
+        """Return the text of this state with its cause."""
         return f"{self}: {detail}"
 
     def noting(self, remark: str) -> str:
-        """Return the text of this state with a remark on what is no problem."""
+        """Return the text of this state with a remark, such as what a model cannot do."""
         return f"{self}; {remark}"
 
     @classmethod
@@ -29,6 +29,6 @@ class State(StrEnum):
 
     @staticmethod
     def remarks(text: str) -> list[str]:
-        """Return what a state that is no problem remarks, an empty list for any other state."""
+        """Return the remarks in the text of the state `running`, an empty list for any other state."""
         kind, *remarks = text.split("; ")
         return remarks if kind == State.RUNNING else []

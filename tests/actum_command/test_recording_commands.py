@@ -169,7 +169,7 @@ def test_what_a_crash_left_is_not_recorded_over_but_finished(live: Live, tmp_pat
     assert (tmp_path / "a.mcap.part").read_bytes() == left
     assert live.receive() is not None, "nobody has listened"
     assert (
-        f"1 messages, all that the unfinished file holds, written to {path}"
+        f"1 messages, all that are complete in the unfinished file, written to {path}"
         in invoke("record", path, "--finish").stdout
     )
     assert [message.stamp_ns for message in Recording(path).messages()] == [1]

@@ -77,7 +77,11 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
     images: Annotated[
         bool,
         typer.Option(
-            "--images", help="also send camera images to other hosts; default: images stay on the camera's host"
+            "--images",
+            help=(
+                "also send camera images to other hosts; default: images stay on the camera's host, but with "
+                "--open they always cross"
+            ),
         ),
     ] = False,
     simulate: Annotated[bool, typer.Option("--simulate", help="run the simulated scene in place of cameras")] = False,

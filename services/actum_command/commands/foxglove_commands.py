@@ -115,7 +115,10 @@ def export(
         ),
     ] = False,
 ) -> None:
-    """Convert a recording to a file that Foxglove can open. Example: actum export --foxglove wave.mcap out.mcap."""
+    """Convert a recording to a file that Foxglove can open.
+
+    Example: actum export --foxglove wave.mcap out.mcap
+    """
     if not for_foxglove:
         fail("no output format is given: add --foxglove")
     refuse_without("foxglove", "foxglove-sdk", "foxglove")

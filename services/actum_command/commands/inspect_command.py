@@ -19,6 +19,12 @@ from som_classifier.model_maps import NoMapsError, maps_of
 FORMATS = ("png", "svg")
 """Formats that pictures can be written in."""
 
+UNMARKED = (
+    "the given recordings contain no marked action: mark when actions start and end, either while recording (see "
+    "'actum segment --help') or afterwards with 'actum label'"
+)
+"""What is wrong and what to do where recordings have no marked segment."""
+
 FILES = (".png", ".svg", ".html", ".pdf")
 """Endings by which a name given as the folder is taken for that of a file."""
 
@@ -72,13 +78,15 @@ def inspect(
     except (ModelError, RecordingError, OSError) as error:
         fail(str(error))
     tell_unread(recordings)
+    if not count:
+        fail(UNMARKED)
     say(f"{count} pictures in {time.monotonic() - began_s:.1f} s: open {output / 'index.html'}")
 
 
 def _write_inspection(
     model: Model, recordings: Sequence[Recording], folder: Path, ending: str, progress: Progress
 ) -> int:
-    """Write pictures and page, and return how many pictures there are; fail where recordings have no marked segment.
+    """Write pictures and page, and return how many pictures there are: 0 where recordings have no marked segment.
 
     Raises:
         NoMapsError: there are no recordings, and the model has no maps.
@@ -95,11 +103,7 @@ def _write_inspection(
         raise NoMapsError(model)
     segments = answered_segments(model, recordings, progress)
     if recordings and not segments:
-        tell_unread(recordings)
-        fail(
-            "the given recordings contain no marked action: mark when actions start and end, either while recording "
-            "(see 'actum segment --help') or afterwards with 'actum label'"
-        )
+        return 0
     labelled = any(segment.label is not None for segment in segments)
     evaluation = evaluate(model, recordings, progress) if labelled else None
     planned = list(pictures(model, segments, evaluation))

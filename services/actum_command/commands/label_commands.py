@@ -144,7 +144,10 @@ def add(
     label: Label,
     agent: AgentOption = None,
 ) -> None:
-    """Label an action in a recording by its start and end. Example: actum label add wave.mcap 12.3 14.1 wave."""
+    """Label an action in a recording by its start and end.
+
+    Example: actum label add wave.mcap 12.3 14.1 wave
+    """
     take = _opened(file)
     _refuse_length(label)
     with _editing(file):

@@ -70,8 +70,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             help=(
                 "store only the start and end marks that were made by these, separated by commas: manual (people and "
-                "other programs), simulator (the simulated scene), replay ('actum play'), auto (the classifier). all "
-                "stores every mark. Default: manual; with --times, none of these marks"
+                "other programs), simulator (the simulated scene), replay ('actum play'), auto (the classifier); or "
+                "'all' for every mark. Default: manual; with --times, none of these marks"
             )
         ),
     ] = None,
@@ -104,8 +104,9 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Record a sensor's streams, and the start and end marks of actions, to a file for training or for playing again.
 
-    With --label and --times, the recording is labelled automatically. Example: actum record wave.mcap --label wave
-    --times 5
+    With --label and --times, the recording is labelled automatically:
+
+    actum record wave.mcap --label wave --times 5
 
     No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.
 
@@ -168,7 +169,7 @@ def _finish(output: Path) -> None:
             f"{output} cannot be written ({error.strerror}): solve this problem, then use --finish again; "
             f"{unfinished(output)} was not changed"
         )
-    say(f"{count} messages, all that the unfinished file holds, written to {output}")
+    say(f"{count} messages, all that are complete in the unfinished file, written to {output}")
 
 
 def _origins(marks: str | None, times: int | None) -> list[str] | None:

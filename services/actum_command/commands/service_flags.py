@@ -34,9 +34,10 @@ def with_router_flags(command: Command) -> Command:
 
 
 def with_flags_of(*services: str, names: tuple[str, ...] | None = None) -> Callable[[Command], Command]:
-    """Return what adds to a command an option for each setting of services that it lacks, or only for those of names.
+    """Return a decorator that adds to a command an option for each setting of services, or only for those in `names`.
 
-    The command gets the values as `given`. Settings that every service has are left out.
+    The command gets the values as `given`. Settings that every service has, and options that the command has already,
+    are left out.
     """
     common = {*ServiceSettings.model_fields, *SET_BY_UP}
 

@@ -91,10 +91,10 @@ def connect_whenever() -> Client:
     return connect(wait_s=float("inf"))
 
 
-def refuse_without(module: str, package: str, extra: str) -> None:
-    """Fail where a library is not installed."""
+def refuse_without(module: str, what: str, extra: str) -> None:
+    """Fail where a library is not installed; `what` begins the sentence and names the library."""
     if find_spec(module) is None:
-        fail(f"{package} is not installed: {adding(extra)}")
+        fail(f"{what} is not installed: {adding(extra)}")
 
 
 def refuse_ending(file: Path, *endings: str) -> None:

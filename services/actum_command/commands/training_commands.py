@@ -49,7 +49,7 @@ SET_HELP = (
     f"joints are used: {', '.join(ATTENTIONS)} (default: moving, which is the part that moves most)"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
-UNTRAINED = "used only with --leave-one-person-out: "
+ONLY_LEFT_OUT = "used only with --leave-one-person-out: "
 PRESETS_SHOWN = f"<{'|'.join(PRESETS)}>"
 PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HELP)]
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
@@ -124,11 +124,11 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
             ),
         ),
     ] = False,
-    preset: Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=UNTRAINED + PRESET_HELP)] = DEFAULT.name,
+    preset: Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=ONLY_LEFT_OUT + PRESET_HELP)] = DEFAULT.name,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=UNTRAINED + SET_HELP)
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=ONLY_LEFT_OUT + SET_HELP)
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help=UNTRAINED + SEED_HELP)] = 0,
+    seed: Annotated[int, typer.Option(min=0, help=ONLY_LEFT_OUT + SEED_HELP)] = 0,
     with_excluded: AllOption = False,
 ) -> None:
     """Test how well actions are recognised in labelled recordings, and print the scores.
@@ -205,7 +205,10 @@ def _evaluate_continuously(
 
 
 def segmentation_of(given: Given) -> Segmentation:
-    """Return what a classifier with these flags finds by itself; others are from the environment or `ACTUM_CONFIG`."""
+    """Return the search settings of a classifier with these flags, and of the environment and `ACTUM_CONFIG`.
+
+    Fail where the settings cannot be used.
+    """
     try:
         settings = from_command_line(Settings, CLASSIFIER, arguments_of(CLASSIFIER, given))
     except ValueError as error:

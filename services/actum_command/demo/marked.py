@@ -28,7 +28,6 @@ from som_classifier.model_loading import load_model
 from som_classifier.presets import DEFAULT
 
 FIRST_TESTED = ACTOR + 1  # the first actor of the test; the others have the numbers that follow
-PEOPLE = 9  # actors of the test: the paper tests each action 9 times, here once with each actor
 TEST_SEED = 2  # another than in training, so that no repetition is the same as in training
 TRAINING_REPETITIONS = 12  # enough samples of each action that more no longer help
 LONGEST_SAMPLE_S = 4.5  # more than an action of the simulated scene takes with the pause after it

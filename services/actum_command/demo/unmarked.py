@@ -134,9 +134,9 @@ class PersonWitness:
 
 def introduction(people: int) -> str:
     """Say what is going to be seen."""
-    others = f"{people} others act" if people > 1 else "one other acts"
+    acting = f"{people} simulated people act" if people > 1 else "One simulated person acts"
     return (
-        f"Simulated people teach, then {others} in real time, with everyday things in between. "
+        f"{acting} in real time, with everyday things in between; the model that ships with actum has never seen them. "
         "Nobody marks when an action begins or ends.\n"
         "Each line: what was done, whether that was found and its object named, and the event."
     )

@@ -59,8 +59,10 @@ class Commander:
                     "a bug occurred in the service while it carried out the command, so the command may be done only "
                     "in part, and the service stops: report the bug with the last lines of the service's log"
                 )
-                query.reply_err(packed({"error": problem}, encoding), encoding=encoding)
-                self._end_at_bug(f"while the service carried out the command {query.key_expr}", error)
+                try:
+                    query.reply_err(packed({"error": problem}, encoding), encoding=encoding)
+                finally:  # the session may be closing already
+                    self._end_at_bug(f"while the service carried out the command {query.key_expr}", error)
 
     def _asked(self, asked: zenoh.KeyExpr) -> list[str]:
         """Return the command's name as the last chunks of its key; none where the list of commands is asked for.

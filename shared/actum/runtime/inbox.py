@@ -1,4 +1,4 @@
-"""Subscriptions with rings: of a node, a thread for each, so that no stream can stall another; and of programs."""
+"""Subscriptions with rings: a node reads each by a thread of its own, so that no stream can stall another."""
 
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
