@@ -26,8 +26,9 @@ Made by `actum deploy init`. Runs here:
 {secured}
 ## With containers
 
-The images `actum/…` come from `docker compose build` in actum's repository, or by `docker save` and `docker load` from
-a machine that has them.
+The images `actum/…` come from `docker compose build` in actum's repository, that of a camera from
+`ACTUM_POSE_MODEL=$PWD/pose.task docker compose -f deploy/compose.camera-host.yml build` there; or all of them by
+`docker save` and `docker load` from a machine that has them.
 
 ```sh
 sudo chown -R {user}:{user} {credentials}    # the services' user, and nobody else, may read the private keys

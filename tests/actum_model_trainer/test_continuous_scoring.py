@@ -246,7 +246,10 @@ def test_where_action_points_lie_is_the_median_of_their_fractions() -> None:
 @given(detections, truths)
 def test_json_holds_all_that_is_scored(given_: list[Detection], truths_: list[Truth]) -> None:
     everything = Found(tuple(given_), tuple(truths_), (seen(60),))
-    assert json.dumps(everything.as_json())
+    written = json.loads(json.dumps(everything.as_json()))
+    assert [Detection(**each) for each in written["detections"]] == given_
+    assert [Truth(**each) for each in written["truths"]] == truths_
+    assert [Stretch(**each) for each in written["seen"]] == [seen(60)]
     assert json.dumps(scores_of(everything).as_json())
 
 

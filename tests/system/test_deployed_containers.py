@@ -71,6 +71,7 @@ def taken(tmp_path_factory: pytest.TempPathFactory, scene_model: Path) -> Iterat
     with TcpProxy(ports["camera"], host=address, seed=1) as link:
         router = folder / "compute" / "router.json5"
         router.write_text(router.read_text().replace(f"{address}:{ports['camera']}", f"{address}:{link.port}"))
+        assert f"{address}:{link.port}" in router.read_text(), "the routers are linked by the proxy"
         made = Taken(folder, address, ports, link)
         try:
             for host in ports:

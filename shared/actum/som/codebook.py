@@ -1,6 +1,6 @@
 """The codebook of a map: weights on a grid, to be looked up and measured, but not trained."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from itertools import product
 from typing import Any, Self, TypeVar
@@ -57,6 +57,10 @@ class Codebook:
         check_squarable(weights)
         weights.setflags(write=False)
         object.__setattr__(self, "weights", weights)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle and copy by the constructor's arguments, so that the copy's weights are read-only, too."""
+        return type(self), tuple(getattr(self, field.name) for field in fields(self))
 
     @classmethod
     def of_planes(cls, planes: ArrayLike) -> Self:

@@ -1,5 +1,9 @@
 """The map as it is looked up: hand-computed cases and invariances, in both precisions."""
 
+import pickle
+from collections.abc import Callable
+from copy import copy, deepcopy
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,6 +12,16 @@ from hypothesis.extra.numpy import arrays
 
 from actum.som import Schedule, Som
 from map_cases import line_map, rng
+
+
+@pytest.mark.parametrize("copied", [copy, deepcopy, lambda som: pickle.loads(pickle.dumps(som))])
+def test_copies_are_the_same_map_and_cannot_be_written_either(copied: Callable[[Som], Som]) -> None:
+    som = Som.random(3, 4, 2, rng(), np.float32)
+    som.bmus([[0.5, 0.5]])
+    twin = copied(som)
+    assert (twin.rows, twin.cols, twin.dtype) == (3, 4, np.float32)
+    assert (twin.weights == som.weights).all()
+    assert not twin.weights.flags.writeable
 
 
 def test_random_weights_are_drawn_from_zero_to_one() -> None:

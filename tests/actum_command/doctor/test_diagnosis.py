@@ -152,12 +152,12 @@ def test_a_state_in_which_nothing_is_answered_is_a_problem(state: str, told: str
         (
             "source ended",
             "file wave.mp4 (camera)",
-            "restart sensor_gateway to play the source once more, or with --loop to",
+            f"{AGAIN} --loop to repeat the source without end",
         ),
         (
             "source ended",
             DESCRIPTION,
-            "restart sensor_gateway to play the source once more, or with --repetitions 0 to",
+            f"{AGAIN} --repetitions 0 to repeat the source without end",
         ),
     ],
 )
