@@ -167,7 +167,10 @@ def _is_finite(value: Any) -> bool:
 @contextmanager
 def desk_of(name: str) -> Any:
     with TemporaryDirectory() as folder:
-        yield Desk(name, Path(folder))
+        desk = Desk(name, Path(folder))
+        yield desk
+        if "discard" in desk.commands:
+            desk.ask("discard", b"", JSON)  # a take that is still recorded would leave its file open
 
 
 HOSTILE = (
