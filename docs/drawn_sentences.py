@@ -6,6 +6,7 @@ import random
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -33,8 +34,10 @@ def errors() -> set[str]:
     constants = _unambiguous(sources)
     found: set[str] = set()
     for path, node in sources.nodes():
-        for expression in _expressions(node, Path(path).stem in FINDINGS):
-            found.update(sources.texts(expression))
+        own = sources.constants_of(path)
+        expressions = _expressions(node, Path(path).stem in FINDINGS)
+        parts = [[own[name]] if (name := ast.unparse(it)) in own else [*sources.texts(it)] for it in expressions]
+        found.update(": ".join(chosen) for chosen in product(*filter(None, parts)))  # such as a problem and its remedy
     return {text for text in found if len(re.findall(r"\b[a-z]+", re.sub(r"{[^}]*}", "", text))) >= FEWEST_WORDS}
 
 
@@ -97,13 +100,16 @@ def _of_command(command: Any, path: str) -> Iterator[str]:
 
 
 def paragraphs() -> set[str]:
-    """Collect the paragraphs and lists of the pages, without tables, code and generated parts."""
+    """Collect the paragraphs and lists of the pages with their headings, without tables, code and generated parts."""
     found: set[str] = set()
     for page in PAGES:
         text = re.sub(r"```.*?```|<!--.*?-->", "", PART.sub("", page.read_text(encoding="utf-8")), flags=re.S)
+        heading = ""
         for block in re.split(r"\n\s*\n", text):
-            if not block.startswith(("#", "|", "!", "<")) and len(block.split()) > FEWEST_WORDS:
-                found.add(f"[{page.name}] {' '.join(block.split())}")
+            if block.startswith("#"):
+                heading = block.lstrip("# ")
+            elif not block.startswith(("|", "!", "<")) and len(block.split()) > FEWEST_WORDS:
+                found.add(f"[{page.name}: {heading}] {' '.join(block.split())}")
     return found
 
 

@@ -29,10 +29,13 @@ class Sources:
     @cached_property
     def constants(self) -> dict[str, str]:
         """The module-level text constants, by name."""
+        return {name: text for path in self.modules for name, text in self.constants_of(path).items()}
+
+    def constants_of(self, path: str) -> dict[str, str]:
+        """Return the module-level text constants of one module, by name."""
         return {
             target.id: node.value.value
-            for tree in self.modules.values()
-            for node in tree.body
+            for node in self.modules[path].body
             if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant)
             if isinstance(node.value.value, str)
             for target in node.targets

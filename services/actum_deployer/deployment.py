@@ -207,7 +207,8 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     named = sensors.split(",") if sensors is not None else [f"kinect{number}" for number in range(len(cameras))]
     if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
         raise SettingsError(
-            f"hosts: {text!r}: give at least one camera=ADDRESS and one compute=ADDRESS, and each name only once"
+            f"hosts: {text!r}: give camera=ADDRESS and compute=ADDRESS; "
+            "further hosts need names of their own, such as camera2=ADDRESS"
         )
     if len(named) != len(cameras) or len(set(named)) < len(named):
         raise SettingsError(f"sensors: {sensors!r}: give {len(cameras)} different sensor names, one per camera")

@@ -56,9 +56,9 @@ def move(take: Take, segment: MarkedSegment, start_ns: int, end_ns: int) -> None
         if moved.mirrored != other.mirrored and moved.shares_frames(other):
             mirrored, plain = (moved, other) if moved.mirrored else (other, moved)
             raise EditError(
-                f"one frame would belong to both segments {mirrored.segment_id} and {plain.segment_id}, but left and "
-                f"right are exchanged (mirrored) only in {mirrored.segment_id}: leave time between the two segments, "
-                "or mirror one of them first"
+                f"segments {mirrored.segment_id} and {plain.segment_id} would overlap, but left and right are "
+                f"exchanged (mirrored) only in {mirrored.segment_id}: leave time between them, or "
+                f"mirror {plain.segment_id} first"
             )
     _mend(take, [(segment, moved)])
 

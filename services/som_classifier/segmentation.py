@@ -12,7 +12,7 @@ WantedSegments = Literal["marks", "auto", "both"]
 """Which segments are to be answered: the marked ones, those that the classifier finds by itself, or both."""
 CANNOT = "finds no segments by itself: the model was trained without continuous recordings"
 """What the state says of a model without a spotter."""
-NO_BACKGROUND = "no background in the training data: none is a guess"
+NO_BACKGROUND = "no background in the training data: the false-alarm rate is unknown"
 """What the state says of a model that has never seen people do anything else."""
 
 

@@ -83,8 +83,7 @@ class McapFile:
                     channel = channels.get(record.channel_id)
                     if channel is None:
                         raise self._damaged(
-                            f"one of its messages belongs to channel {record.channel_id}, which the file does not "
-                            "describe"
+                            f"a message belongs to channel {record.channel_id}, which the file does not describe"
                         )
                     encoding = encoding_of(channel, schemas.get(channel.schema_id, ""))
                     yield StoredMessage(record.publish_time, channel.topic, record.data, encoding)

@@ -70,8 +70,11 @@ class Recording:
             points: dict[str, int] = json.loads(self.metadata.get(ACTION_POINTS, "{}"))
             return {segment_id: int(stamp_ns) for segment_id, stamp_ns in points.items()}
         except (ValueError, TypeError, AttributeError):
-            problem = f"the metadata field {ACTION_POINTS} is not a JSON object that maps segment ids to time stamps"
-            raise RecordingError(self.path, problem, "import the recording again") from None
+            raise RecordingError(
+                self.path,
+                f"the metadata field {ACTION_POINTS} is not a JSON object that maps segment ids to time stamps",
+                "import the recording again",
+            ) from None
 
     @cached_property
     def topics(self) -> frozenset[keys.Topic]:

@@ -91,8 +91,7 @@ def _copy(
         except KeyError as error:
             raise RecordingError(
                 source.path,
-                f"the recording is damaged (one of its messages belongs to channel {error}, which the file does not "
-                "describe)",
+                f"the recording is damaged (a message belongs to channel {error}, which the file does not describe)",
                 REMEDY,
             ) from None
     if metadata and not copying.described:

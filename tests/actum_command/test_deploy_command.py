@@ -84,7 +84,7 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("init", "--hosts", "camera=a"), "give at least one camera=ADDRESS and one compute=ADDRESS"),
+        (("init", "--hosts", "camera=a"), "give camera=ADDRESS and compute=ADDRESS"),
         (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords exclude each other"),
         (("rotate",), "contains no deployment.json"),
     ],

@@ -94,8 +94,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--events",
             help=(
-                "run as a service that keeps a history: it stores only events, the classifier's answer to each action "
-                "once the action has ended, and start and end marks, in files in the folder OUTPUT"
+                "run as a service that keeps a history in files in the folder OUTPUT. The history has three kinds of "
+                "messages: events, the classifier's final answers, and the start and end marks"
             ),
         ),
     ] = False,
