@@ -11,7 +11,7 @@ PYTHONS ?= python3.11 python3.12 python3.13
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo first-event simulated-model up test test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -42,8 +42,11 @@ first-event:  ## seconds from a clone in an empty folder to the first event of t
 up: $(RUNS)  ## router and all services, until Ctrl-C
 	$(BIN)/actum up
 
-test: check  ## static checks, then every test but the long ones
-	$(BIN)/pytest -n 4 --dist worksteal
+test: check  ## static checks, then the tests that notice nearly every mistake; five minutes
+	$(BIN)/pytest -n 6 --dist worksteal
+
+test-thorough: $(STAMP)  ## the tests of the web page, of benchmarks, and the same as make test in more variations
+	$(BIN)/pytest -n 4 --dist worksteal -m "browser or thorough"
 
 test-pythons:  ## install and test with each of PYTHONS that is at hand, each in an environment of its own
 	@tested=; for python in $(PYTHONS); do \

@@ -33,10 +33,10 @@ def errors() -> set[str]:
     sources: Sources = Sources(PACKAGES, lambda part: _hole(part, constants))
     constants = _unambiguous(sources)
     found: set[str] = set()
+    named = {path: sources.constants_of(path) for path in sources.modules}
     for path, node in sources.nodes():
-        own = sources.constants_of(path)
         expressions = _expressions(node, Path(path).stem in FINDINGS)
-        parts = [[own[name]] if (name := ast.unparse(it)) in own else [*sources.texts(it)] for it in expressions]
+        parts = [[text] if (text := named[path].get(ast.unparse(it))) else [*sources.texts(it)] for it in expressions]
         found.update(": ".join(chosen) for chosen in product(*filter(None, parts)))  # such as a problem and its remedy
     return {text for text in found if len(re.findall(r"\b[a-z]+", re.sub(r"{[^}]*}", "", text))) >= FEWEST_WORDS}
 

@@ -29,10 +29,24 @@ class Sources:
     @cached_property
     def constants(self) -> dict[str, str]:
         """The module-level text constants, by name."""
-        return {name: text for path in self.modules for name, text in self.constants_of(path).items()}
+        return {name: text for path in self.modules for name, text in self._defined(path).items()}
 
     def constants_of(self, path: str) -> dict[str, str]:
-        """Return the module-level text constants of one module, by name."""
+        """Return the text constants that one module defines or imports, by name."""
+        imported = {
+            alias.name: constants[alias.name]
+            for node in self.modules[path].body
+            if isinstance(node, ast.ImportFrom)
+            for module in (
+                f"{package}/{(node.module or '').replace('.', '/')}.py" for package in ("shared", "services")
+            )
+            if (constants := self._defined(module) if module in self.modules else {})
+            for alias in node.names
+            if alias.name in constants
+        }
+        return imported | self._defined(path)
+
+    def _defined(self, path: str) -> dict[str, str]:
         return {
             target.id: node.value.value
             for node in self.modules[path].body

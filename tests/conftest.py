@@ -76,7 +76,7 @@ def pytest_collection() -> Iterator[None]:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     chosen = config.getoption("-m") or ""
-    for marker in ("live", "containers", "long", "chaos"):
+    for marker in ("live", "containers", "long", "chaos", "browser", "thorough"):
         if marker not in chosen:
             skipped = [item for item in items if item.get_closest_marker(marker)]
             if skipped:

@@ -21,7 +21,7 @@ def small_file(path: Path) -> bytes:
     with path.open("rb") as file:
         content = file.read(LARGEST_BYTES + 1)
     if len(content) > LARGEST_BYTES:
-        raise ValueError(f"{path} is larger than {LARGEST_BYTES} bytes: move this file to another folder")
+        raise ValueError(f"{path} is larger than {LARGEST_BYTES} bytes, the largest size allowed: remove this file")
     return content
 
 

@@ -64,7 +64,7 @@ def test_on_time_each_segment_has_its_event() -> None:
     assert ON_TIME[0]["result"] != ON_TIME[1]["result"]
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(delays, delays, delays)
 @example([0], [SKEW_NS], [0])
 @example([SKEW_NS], [0], [0])

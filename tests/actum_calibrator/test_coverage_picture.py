@@ -1,5 +1,6 @@
 import cv2
 import numpy as np
+import pytest
 
 from actum_calibrator.board_views import View
 from actum_calibrator.coverage_picture import COVERED, EDGE, EMPTY, TOP, WIDTH, coverage_picture
@@ -11,6 +12,7 @@ def colour(code: str) -> list[int]:
     return [int(code[start : start + 2], 16) for start in (5, 3, 1)]
 
 
+@pytest.mark.thorough
 def test_the_picture_shows_where_the_board_was_and_where_never(good_views: list[View]) -> None:
     found = estimate_intrinsics(good_views)
     picture = cv2.imdecode(np.frombuffer(coverage_picture(found, good_views), dtype=np.uint8), cv2.IMREAD_COLOR)

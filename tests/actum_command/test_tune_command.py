@@ -92,6 +92,7 @@ def test_what_cannot_be_tuned_is_refused_before_the_work(desk: Desk, tmp_path: P
     )
 
 
+@pytest.mark.thorough
 def test_the_picture_of_a_recording_also_shows_what_a_model_finds(desk: Desk, tmp_path: Path) -> None:
     run("label", "picture", desk.third, "--model", desk.model, "-o", tmp_path / "stream.svg")
     drawn = (tmp_path / "stream.svg").read_text(encoding="utf-8")

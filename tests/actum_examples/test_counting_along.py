@@ -47,6 +47,7 @@ def test_what_the_simulated_person_does_ends_its_take_with_the_right_number(acti
         assert each.start_ns <= middle_ns <= each.end_ns
 
 
+@pytest.mark.thorough
 def test_where_the_simulated_person_only_stands_nothing_is_counted_and_that_is_explained() -> None:
     counter, _ = counted_along(performed("", 0), 5)
     assert (counter.count, counter.finished, counter.cuts()) == (0, False, None)

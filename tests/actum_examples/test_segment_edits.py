@@ -137,7 +137,7 @@ Edits = st.lists(
 numbers = count()
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(spans=Spans, edits=Edits)
 def test_an_example_is_whole_after_any_sequence_of_edits(
     tmp_path: Path, spans: list[tuple[int | None, int, int]], edits: list[tuple[str, int, int, int]]

@@ -83,10 +83,7 @@ def test_the_sensitivities_find_different_numbers_of_actions(trial: Trial) -> No
     "options",
     [
         SpottingOptions(),
-        SpottingOptions(4.0),
-        SpottingOptions(2.0),
-        SpottingOptions(1.0),
-        SpottingOptions(shortest_pause_s=0.3),
+        SpottingOptions(1.0, shortest_pause_s=0.3),
         SpottingOptions(2.0, cooldown_s={"lift": 3.0, "push": 1.0}),
         SpottingOptions(4.0, disabled=frozenset({"lift"})),
     ],
@@ -117,6 +114,7 @@ def test_a_model_without_a_search_is_refused(recordings: list[Recording]) -> Non
         tuned(tiny_model(), recordings)
 
 
+@pytest.mark.thorough
 def test_the_scores_told_are_those_of_the_classifier_with_the_settings_picked(
     model: Model, recordings: list[Recording]
 ) -> None:

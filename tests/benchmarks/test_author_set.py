@@ -11,6 +11,8 @@ from actum_dataset_importer import msr_action3d
 from actum_dataset_importer.takes import DatasetError
 from people import STANDING
 
+pytestmark = pytest.mark.thorough
+
 NAMES = ["a01_s01_e01", "a05_s06_e02", "a07_s08_e02"]
 
 

@@ -22,6 +22,8 @@ from actum.recording import Recording
 from actum.skeletons import INDEX, JOINTS
 from actum.standard_body import BONES
 
+pytestmark = pytest.mark.thorough
+
 FRAMES, SECOND_NS = 9, 1_000_000_000
 STANDING_M = {
     "head": (0.0, -0.7, 3.0),

@@ -18,6 +18,8 @@ from actum.node import SECOND_NS
 from empty_messages import action, mark, skeleton, status
 from events import event
 
+pytestmark = pytest.mark.thorough
+
 SESSION_NS = 1000 * SECOND_NS
 LIFT = Planned(1, SECOND_NS, 3 * SECOND_NS, "lift", 2, marked=True)
 PUSH = Planned(2, 5 * SECOND_NS, 7 * SECOND_NS, "push", 1, marked=False)

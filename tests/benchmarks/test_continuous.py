@@ -25,6 +25,8 @@ from actum_model_trainer.samples import select
 from msrc12_streams import lifting, written
 from performers import performance
 
+pytestmark = pytest.mark.thorough
+
 S = 1_000_000_000
 CLASSES = [NONE, "lift", "push"]
 

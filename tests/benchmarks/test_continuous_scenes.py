@@ -42,6 +42,8 @@ from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.spotted import SpottedSegment, Spotter, SpottingOptions
 from spotters import beating, finding, spotting
 
+pytestmark = pytest.mark.thorough
+
 S = 1_000_000_000
 
 

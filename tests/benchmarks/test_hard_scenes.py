@@ -20,6 +20,8 @@ from scene_simulator.random_streams import random_stream
 from scene_simulator.simulated_scene import CLOSED, SceneState
 from scene_simulator.simulator import Simulator
 
+pytestmark = pytest.mark.thorough
+
 PROGRAMME = [Task("push", 1), Task("lift", 2), Task("put", 3)]
 CONTACT = ("push", "pull", "put", "lift")
 

@@ -2,9 +2,12 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import pytest
 from benchmarks.camera.joined_clips import FRAMES_PER_SECOND, SIZE, STILL_FRAMES, joined, stamp_ns
 
 from sensor_gateway.devices.video import pictures_of
+
+pytestmark = pytest.mark.thorough
 
 LENGTHS = {"category1": 9, "category2": 14, "category5": 11}
 """Frames of a clip in which somebody waves, one in which they drink, and one of what nobody labels."""

@@ -1,9 +1,12 @@
 from pathlib import Path
 
+import pytest
 from benchmarks.recognition.videos import PIECE_NS, Pieces
 
 from actum.messages import Agent, Segment, Skeleton
 from actum.recorder import Recorder
+
+pytestmark = pytest.mark.thorough
 
 FRAMES = 7
 EVERY_NS = PIECE_NS // 3

@@ -6,6 +6,8 @@ pytest.importorskip("aeon", reason='the peers need pip install -e ".[benchmarks]
 from benchmarks.recognition.development import DevelopmentSet
 from benchmarks.recognition.sets import HALF_ERROR, PEERS, Errors
 
+pytestmark = pytest.mark.thorough
+
 SEQUENCES = 4
 
 

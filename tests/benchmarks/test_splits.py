@@ -8,6 +8,8 @@ from benchmarks.recognition.splits import FEW_DRAWS, FEW_TESTED, complete_people
 
 from actum_model_trainer.samples import SegmentSample
 
+pytestmark = pytest.mark.thorough
+
 LABELS = ("bow", "kick", "wave")
 PEOPLE = range(1, 9)
 OF_EACH = 20

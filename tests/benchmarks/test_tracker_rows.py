@@ -5,6 +5,8 @@ import pytest
 from benchmarks.tracker.marker_scenes import Scene
 from benchmarks.tracker.rows import OURS, ROWS
 
+pytestmark = pytest.mark.thorough
+
 SCENE = Scene("DICT_4X4_50", 40, "plain", 1)
 
 

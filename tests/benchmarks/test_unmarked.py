@@ -8,6 +8,8 @@ from action_fusion.settings import Settings
 from actum.messages import Action, Message
 from scenes import Place, acting_on, action
 
+pytestmark = pytest.mark.thorough
+
 ON_TABLE: Place = (0.2, 0.1, 0.5)
 UP: Place = (0.2, 0.4, 0.5)
 SCENE = acting_on(ON_TABLE, UP)

@@ -103,6 +103,7 @@ def test_what_is_open_is_answered_as_if_there_were_no_flood() -> None:
     assert [*final(disturbed)] == [*final(alone.send(*messages))] != []
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("traced")
 @pytest.mark.parametrize(("case", "kind"), [(CLASSIFIER, Posture), (FUSION, Posture), (FUSION, Objects)], ids=repr)
 def test_frames_a_microsecond_apart_are_let_go_and_counted(

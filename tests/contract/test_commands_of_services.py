@@ -249,7 +249,7 @@ every_command = pytest.mark.parametrize(
 
 
 @every_command
-@settings(max_examples=20, suppress_health_check=list(HealthCheck), deadline=None)
+@settings(max_examples=10, suppress_health_check=list(HealthCheck), deadline=None)
 @given(data=st.data())
 def test_whatever_is_asked_is_answered_or_refused_and_survived(service: str, command: str, data: st.DataObject) -> None:
     schema, names = commands_of(service)[command]

@@ -9,6 +9,7 @@ SHARE = 500
 SEED = 11
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("service", TARGETS)
 def test_hostile_messages_are_counted_and_survived(service: str) -> None:
     outcome = run(service, SHARE, SEED)

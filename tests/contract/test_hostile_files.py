@@ -196,6 +196,7 @@ def metadata(model: Path, path: Path, **changes: object) -> Path:
     return path
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("value", [10**18, -1, [10**12], [1] * 1000, {"a": {"b": 10**15}}, "x" * 10**5, None, 1e308])
 def test_a_model_whose_metadata_say_absurd_things_is_loaded_or_refused(
     model: Path, tmp_path: Path, value: object

@@ -22,7 +22,7 @@ LONG_BEFORE_NS = NOON_NS - 1_000_000_000_000
 every_kind_of_input = pytest.mark.parametrize(
     ("case", "message"), [pytest.param(c, m, id=f"{c}-{m.SCHEMA}") for c in CASES for m in c.one_of_each()]
 )
-thorough = settings(max_examples=25, suppress_health_check=list(HealthCheck))
+thorough = settings(max_examples=15, suppress_health_check=list(HealthCheck))
 
 
 def answers(case: Case, wire: Wire) -> list[bytes]:
@@ -65,7 +65,7 @@ def test_any_bytes_and_any_map_are_counted(case: Case, data: st.DataObject) -> N
 
 
 @every_node
-@settings(thorough, max_examples=60)
+@settings(thorough, max_examples=30)
 @given(data=st.data())
 def test_spoiled_messages_and_ticks_are_survived(case: Case, data: st.DataObject) -> None:
     """Whatever was wrong with them, each stream goes on with its fourth good message at the latest."""

@@ -53,7 +53,7 @@ def traced() -> Iterator[None]:
 
 @pytest.mark.parametrize(
     ("case", "renumbered"),
-    [(case, False) for case in [*CASES, FINDING]]
+    [pytest.param(case, False, marks=pytest.mark.thorough) for case in [*CASES, FINDING]]
     + [(case, True) for case in [*CASES, FINDING] if case.name != "marker_tracker"],
     ids=lambda value: {False: "one person", True: "renumbered every second"}.get(value) or repr(value),
 )

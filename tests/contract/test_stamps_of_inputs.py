@@ -50,7 +50,7 @@ def test_time_that_runs_backwards_is_counted_until_it_is_taken_for_a_new_start(c
 
 
 @every_node
-@settings(max_examples=20)
+@settings(max_examples=8)
 @given(
     ahead_ns=st.integers(FAR_NS + 10 * SECOND_NS, 2**62 - 1 - NOON_NS) | st.just(2**62 - 1 - NOON_NS), data=st.data()
 )

@@ -107,6 +107,7 @@ def test_models_are_compared_and_deleted_but_not_the_one_in_use(teacher: Teacher
             teacher.ask(command, model="../x")
 
 
+@pytest.mark.thorough
 def test_a_set_of_two_people_is_tested_by_people(teacher: Teacher, finish: Finish) -> None:
     teacher.ask("evaluate", set="kitchen")
     result = finish()["result"]

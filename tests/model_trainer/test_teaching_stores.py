@@ -210,8 +210,11 @@ def test_what_is_no_take_and_no_model_is_told(teacher: Teacher, name: str, place
     teacher.begin()
 
 
-@pytest.mark.parametrize("name", [*FEW, "a list", "bytes", "deep"])
-@pytest.mark.parametrize("place", ["jobs/job-1.json", "models/history.json", "models/{model}.json", "jobs/job-9.json"])
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [(name, "models/{model}.json") for name in (*FEW, "a list", "bytes", "deep")]
+    + [("deep", place) for place in ("jobs/job-1.json", "models/history.json", "jobs/job-9.json")],
+)
 def test_what_is_no_job_and_no_description_is_survived(teacher: Teacher, name: str, place: str) -> None:
     (model,) = teacher.ask("list")["models"]
     path = teacher.folder / place.format(model=model["id"])
@@ -283,8 +286,11 @@ def test_a_film_of_a_take_that_has_just_vanished_is_refused(teacher: Teacher, mo
         teacher.ask("film", set="kitchen", example="take-0001/cut-1")
 
 
-@pytest.mark.parametrize("place", [*GONE, "sets/.making", "sets/kitchen/set.json"])
-@pytest.mark.parametrize("end", ["stop", "discard", "frames"])
+@pytest.mark.parametrize(
+    ("place", "end"),
+    [(place, "stop") for place in (*GONE, "sets/.making", "sets/kitchen/set.json")]
+    + [(place, end) for place in ("sets/kitchen", "sets/.making", ".") for end in ("discard", "frames")],
+)
 def test_a_take_whose_folder_vanishes_is_lost_with_the_reason_and_another_can_be_recorded(
     teacher: Teacher, place: str, end: str
 ) -> None:

@@ -3,6 +3,8 @@
 import pytest
 from docs import drawn_sentences
 
+pytestmark = pytest.mark.thorough
+
 
 @pytest.fixture(scope="module")
 def errors() -> set[str]:

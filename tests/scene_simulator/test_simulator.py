@@ -20,6 +20,7 @@ def frames() -> list[list[Message]]:
     return list(Simulator(PROGRAMME, 2, 5, start_ns=10**15, image_hz=15).frames())
 
 
+@pytest.mark.thorough
 def test_the_same_arguments_give_the_same_messages_again_and_again(frames: list[list[Message]]) -> None:
     simulator = Simulator(PROGRAMME, 2, 5, start_ns=10**15, image_hz=15)
     list(islice(simulator.frames(), 20))

@@ -136,7 +136,7 @@ def test_what_the_recogniser_calls_unknown_is_counted_and_not_put(monkeypatch: p
     assert node.counters.counts == {"found": 1, "unknown": 1} and not node.counters.rejects
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(length=st.integers(0, 200), people=st.integers(1, 3))
 def test_a_prefix_of_a_stream_gives_the_same_decisions(length: int, people: int) -> None:
     model = beating(tiny_model())
@@ -145,7 +145,7 @@ def test_a_prefix_of_a_stream_gives_the_same_decisions(length: int, people: int)
     assert without_seq(put_by(SomClassifier(model), whole))[: len(begun)] == without_seq(begun)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(seed=st.integers(), delays_s=st.lists(st.floats(0.0, 2.0), min_size=3, max_size=3))
 def test_delays_and_interleaving_of_people_change_nothing_of_anybodys_segments(
     seed: int, delays_s: Sequence[float]

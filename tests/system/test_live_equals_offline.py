@@ -82,6 +82,7 @@ def assert_agree(events: Sequence[Event], offline: Evaluation) -> None:
     assert {name: pair for name, pair in differing.items() if pair[0] != pair[1]} == {}
 
 
+@pytest.mark.thorough
 def test_twenty_msr_sequences(running: System, few_of_msr: Path, quick_model: Path) -> None:
     files = sorted(recording.path for recording in select([few_of_msr], TEST_PEOPLE))
     offline = evaluate(load_model(quick_model), [Recording(file) for file in files])

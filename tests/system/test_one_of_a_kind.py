@@ -141,6 +141,7 @@ def test_a_killed_one_is_replaced_at_once(running: System, name: str) -> None:
     assert second.process.poll() is None
 
 
+@pytest.mark.thorough
 def test_one_that_no_longer_answers_is_waited_for_and_ends_when_it_comes_back(running: System) -> None:
     """As where the machine of the first is asleep: its token stays until Zenoh gives it up, in ten seconds."""
     running.start_router()

@@ -138,7 +138,7 @@ def cut_for_long(link: TcpProxy, over: threading.Event) -> None:
     link.mend()
 
 
-OFTEN = (undisturbed, cut_now_and_then, cut_for_long)
+OFTEN = (undisturbed, pytest.param(cut_now_and_then, marks=pytest.mark.thorough), cut_for_long)
 SELDOM = (pytest.param(delayed, marks=pytest.mark.long), pytest.param(stalling, marks=pytest.mark.long))
 
 

@@ -54,6 +54,7 @@ def test_three_actions_are_taught_and_recognised_by_queries_alone(running: Syste
     ]
 
 
+@pytest.mark.thorough
 def test_a_trainer_that_is_killed_at_any_moment_leaves_whole_files(running: System) -> None:
     """Sets are made, renamed and filled, examples mended, while the process is killed again and again."""
     running.start_router()

@@ -112,6 +112,7 @@ def test_who_shows_what_the_router_knows_is_let_in(running: System, authority: A
     assert "action_fusion is not running" in " ".join(running.actum("doctor").stdout.split())
 
 
+@pytest.mark.thorough
 @with_openssl
 def test_a_certificate_of_another_authority(running: System, authority: Authority, tmp_path: Path) -> None:
     endpoint = started(running, authority.role("router"))
@@ -170,6 +171,7 @@ def test_a_wrong_password(running: System, authority: Authority) -> None:
     assert "wrong" not in refused
 
 
+@pytest.mark.thorough
 @with_openssl
 def test_one_speaks_tls_and_the_other_does_not(running: System, authority: Authority) -> None:
     endpoint = started(running, authority.role("router"))

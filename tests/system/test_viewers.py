@@ -140,6 +140,7 @@ def test_foxglove_is_served_the_live_scene_on_this_machine_only(running: System)
     assert re.search(r"\d+ messages served", serving.said())
 
 
+@pytest.mark.thorough
 @needs_foxglove
 def test_a_recording_is_played_from_its_start_once_somebody_subscribes(running: System, scene: Path) -> None:
     serving = running.start("actum_command", "foxglove", "--port", "0", "--speed", "20", str(scene))

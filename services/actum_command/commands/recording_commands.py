@@ -69,9 +69,9 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "store only the start and end marks that were made by these, separated by commas: manual (people and "
-                "other programs), simulator (the simulated scene), replay ('actum play'), auto (the classifier); or "
-                "'all' for every mark. Default: manual; with --times, none of these marks"
+                "whose start and end marks to store: manual (people and other programs), simulator (the simulated "
+                "scene), replay ('actum play') and auto (the classifier), separated by commas, or all. Default: "
+                "manual. --times makes its own marks; it stores others only if this option names them"
             )
         ),
     ] = None,

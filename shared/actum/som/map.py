@@ -119,7 +119,7 @@ def _linear_weights(vectors: NDArray[Any], rows: int, cols: int) -> Doubles:
         ValueError: a component is missing in every vector: remove or fill it. Or there is no unit.
     """
     if min(rows, cols) < 1:
-        raise ValueError(f"a grid of {rows}×{cols} has no units: use at least 1×1")
+        raise ValueError(f"a map of {rows}×{cols} units is empty: use at least 1×1")
     known = ~np.isnan(vectors)
     if not known.any(axis=0).all():
         raise ValueError(

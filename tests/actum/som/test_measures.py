@@ -33,7 +33,7 @@ def test_neighbours_that_a_grid_does_not_have_are_refused() -> None:
 def test_grids_that_make_no_sense_are_refused(rows: int, cols: int) -> None:
     with pytest.raises(ValueError, match=f"for each unit of the grid of {rows}×{cols}"):
         Som(rows, cols, np.zeros((rows * cols, 1)))
-    with pytest.raises(ValueError, match=f"a grid of {rows}×{cols} has no units"):
+    with pytest.raises(ValueError, match=f"a map of {rows}×{cols} units is empty"):
         Som.linear(rows, cols, [[1.0], [2.0]])
 
 
