@@ -27,8 +27,7 @@ class Settings(ServiceSettings):
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file that the trainer puts into use: when the trainer first finds this file, and whenever this "
-            "file changes, the trainer overwrites --model with a copy of it. The trainer never changes this file, and "
-            "keeps the models that it trained in --trainer-data. Default: no such file"
+            "a model file to start with. The trainer copies it to --model when it first finds this file, and again "
+            "whenever this file changes. It never changes this file. Default: no such file"
         ),
     )

@@ -25,7 +25,8 @@ DirArgument = Annotated[
     Path,
     typer.Argument(
         metavar="DIR",
-        help="the folder for the files of all hosts; it contains private keys, so let nobody else read it",
+        help="the folder of the deployment, in which 'actum deploy init' writes the files of all hosts; it contains "
+        "private keys, so let nobody else read it",
     ),
 ]
 YEAR = 365

@@ -106,7 +106,8 @@ def _opened_file(openni2: Any, path: Path) -> Any:
     if device.playback is None:
         device.close()
         raise CameraLostError(
-            "a driver in OpenNI's folder opened the file as a camera, so OpenNI cannot play the file as a recording"
+            "OpenNI cannot play the file, because another driver in its folder took the file for a camera: remove that "
+            "driver from the folder"
         )
     device.playback.set_repeat_enabled(False)
     device.playback.set_speed(MANUAL)
