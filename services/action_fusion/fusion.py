@@ -51,7 +51,7 @@ def fuse(
     choice = choose(evidence)
     likely = [acted_object(track, choice, evidence, frames) for track in choice.likely]
     described_outcome = described(choice.track, evidence)
-    hands_named = evidence.sides if len(evidence.sides) == 1 else choice.hands
+    hands_named = evidence.sides if len(evidence.sides) == 1 and len(choice.hands) < 2 else choice.hands
     return Event(
         **_common(action),
         **described_outcome,

@@ -210,13 +210,14 @@ def test_what_both_hands_lift_is_lifted_by_either(hand) -> None:
     assert (names(event), event.hand, event.outcome) == (("cup", "cup"), hand, "lifted")
 
 
-def test_a_cue_listed_first_decides_and_may_name_both_hands(monkeypatch) -> None:
+@pytest.mark.parametrize("part", [None, "right_arm"])
+def test_a_cue_listed_first_decides_and_may_name_both_hands(monkeypatch, part) -> None:
     def between_both(evidence: Evidence) -> Choice:
-        lifting = [pair for pair in evidence.own if pair in evidence.transporting]
+        lifting = [pair for pair in evidence.transporting if pair.hand in evidence.hands.own.values()]
         return Choice(lifting[0].track, tuple(pair.hand.side for pair in lifting), lifting[0].track)
 
     monkeypatch.setattr(cues, "CUES", {"joint": (between_both, *cues.CUES["joint"])})
-    event = event_in(BOTH_LIFT, action("lift", part=None))
+    event = event_in(BOTH_LIFT, action("lift", part=part))
     assert event.object is not None
     assert (names(event), event.hand, event.object.in_hand_at_end) == (("cup", "cup"), None, True)
 

@@ -35,8 +35,9 @@ CUES: Mapping[str, tuple[Cue, ...]] = {
 }
 """The cues of each measure, the surest one first: the first cue that chooses an object decides.
 
-Each of these cues looks at one hand at a time. A cue for an action of both hands belongs before `held`: it finds the
-pairs of both hands in `Evidence.own`, and names both hands in `Choice.hands`.
+Each of these cues looks at one hand at a time. A cue for an action of both hands belongs before `held`. It finds both
+hands in `Evidence.hands`, because `Evidence.own` often has only the hand that moved most, and names them in
+`Choice.hands`.
 """
 
 
