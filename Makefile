@@ -59,7 +59,7 @@ test-pythons:  ## install and test with each of PYTHONS that is at hand, each in
 
 test-data: $(STAMP)  ## only the tests on real recordings; fails without ACTUM_DATA
 	@test -d "$$ACTUM_DATA" || { echo "test-data needs ACTUM_DATA: the folder that holds msr_action3d/ and utkinect/" >&2; exit 1; }
-	$(BIN)/pytest -m "data or data and long"
+	$(BIN)/pytest -m "data or data and (long or thorough)"
 
 test-live: $(STAMP)  ## all MSR test recordings through live processes
 	@test -d "$$ACTUM_DATA" || { echo "test-live needs ACTUM_DATA: the folder that holds msr_action3d/" >&2; exit 1; }
@@ -79,7 +79,7 @@ test-chaos: $(STAMP)  ## a few services and routers killed, paused and cut off; 
 
 test-viewers: $(STAMP)  ## what Rerun and Foxglove are sent; installs both, 600 MB
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[dev,view]"
-	$(BIN)/pytest tests/actum_command/test_rerun_entries.py tests/actum_command/test_foxglove_messages.py tests/system/test_viewers.py tests/pages/test_viewers_page.py
+	$(BIN)/pytest -m "thorough or not thorough" tests/actum_command/test_rerun_entries.py tests/actum_command/test_foxglove_messages.py tests/system/test_viewers.py tests/pages/test_viewers_page.py
 
 fuzz: $(STAMP)  ## hostile messages by the hundred thousand to every service, then atheris; twenty minutes
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[fuzz]"
