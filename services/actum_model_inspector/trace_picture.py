@@ -63,7 +63,7 @@ def stays(winners: Indices) -> tuple[Indices, Indices]:
 def _draw_trajectory(axes: Axes, places: Floats, times: Floats) -> None:
     """Join places (n, 2), x and y, by lines in the colour of their time (n,), 0 to 1, long ones with an arrowhead."""
     colours = TIME_COLOURS(_LATEST * times)
-    steps = _shifted_right(np.stack([places[:-1], places[1:]], axis=1))
+    steps = shifted_right(np.stack([places[:-1], places[1:]], axis=1))
     axes.add_collection(LineCollection(list(steps), colors=PAPER, linewidths=4.5, capstyle="round", zorder=3))
     axes.add_collection(LineCollection(list(steps), colors=colours[:-1], linewidths=2.0, capstyle="round", zorder=3))
     for step, colour in zip(steps, colours, strict=False):
@@ -73,8 +73,8 @@ def _draw_trajectory(axes: Axes, places: Floats, times: Floats) -> None:
             axes.annotate("", middle + ahead, middle - ahead, arrowprops=arrow, zorder=3)
 
 
-def _shifted_right(steps: Floats) -> Floats:
-    """Move each step (n, 2, 2), from and to x and y, to its right. Same shape."""
+def shifted_right(steps: Floats) -> Floats:
+    """Return each step (n, 2, 2), from and to x and y, moved to its right by `SHIFT`. Same shape."""
     ahead = steps[:, 1] - steps[:, 0]
     right = ahead[:, ::-1] * [-1.0, 1.0] / np.linalg.norm(ahead, axis=1, keepdims=True)
     moved: Floats = steps + SHIFT * right[:, None]

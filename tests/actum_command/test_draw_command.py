@@ -121,7 +121,7 @@ def test_a_picture_that_cannot_be_written_is_refused_before_the_video_is_seen(
 
 def test_a_folder_that_is_missing_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(draw_command, "estimator_of", lambda _: nullcontext(Counting()))
-    output = tmp_path / "pictures" / "a.png"
+    output = tmp_path / "new" / "pictures" / "a.png"
     done = invoke("draw", str(brightening(tmp_path / "a.avi", 3)), "-o", output)
     assert done.exit_code == 0, done.output
     assert output.is_file()

@@ -8,7 +8,7 @@ from actum.node import SECOND_NS
 from actum.som import Som
 from actum_model_inspector.answered import AnsweredSegment
 from actum_model_inspector.style import LEFT, RIGHT
-from actum_model_inspector.trace_picture import TIME_COLOURS, free_side, trace_picture
+from actum_model_inspector.trace_picture import SHIFT, TIME_COLOURS, free_side, shifted_right, trace_picture
 from actum_model_trainer.answering import encoded
 from actum_model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
@@ -23,6 +23,13 @@ def picture_of(answered: AnsweredSegment) -> Figure:
     maps = maps_of(tiny_model())
     assert maps is not None
     return trace_picture(maps, answered)
+
+
+def test_steps_there_and_back_lie_side_by_side_each_on_its_right() -> None:
+    """The picture's y points down: the right of a step along x has the larger y."""
+    there_and_back = np.array([[[0.0, 0.0], [2.0, 0.0]], [[2.0, 0.0], [0.0, 0.0]]])
+    assert np.allclose(shifted_right(there_and_back)[:, :, 1], [[SHIFT, SHIFT], [-SHIFT, -SHIFT]])
+    assert np.allclose(shifted_right(there_and_back)[:, :, 0], there_and_back[:, :, 0])
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,16 @@
 """Pages in Chromium, of a service that is given what a live system would put."""
 
+import shutil
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 import chromium as installed
 from dashboards import Colleague, served
+from lessons import Lesson, lesson
 from page_scenes import Scene, maps
 
 Open = Callable[..., Any]
@@ -91,6 +94,19 @@ def opener(shared: Any) -> Iterator[Open]:
         opened_one.close()
     shared.set_offline(False)
     assert errors == []
+
+
+@pytest.fixture(autouse=True)
+def described_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("web_dashboard.application.DESCRIBING_S", 0.2)
+
+
+@pytest.fixture
+def room(taught: Path, tmp_path: Path) -> Iterator[Lesson]:
+    """A lesson in a copy of the folder that the module has taught."""
+    shutil.copytree(taught, tmp_path / "copy")
+    with lesson(tmp_path / "copy") as made:
+        yield made
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """What the page shows holds now: what has ended, gone or been switched off is no longer shown, or said to be so."""
 
-import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,7 @@ from PIL import Image as Picture
 from actum.commands import Refusal
 from actum.messages import Info, Objects, Segment
 from dashboards import Colleague, served
-from lessons import SET, Lesson, lesson
+from lessons import SET, Lesson
 from live import wait_until
 from page_scenes import Scene, status
 from people import STANDING, skeleton
@@ -48,11 +47,6 @@ class Classifier(Colleague):
         return {"parameters": [{"name": "segments", "value": self.segments}]}
 
 
-@pytest.fixture(autouse=True)
-def described_often(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("web_dashboard.application.DESCRIBING_S", 0.2)
-
-
 @pytest.fixture(scope="module")
 def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with two sets, of which one has an action."""
@@ -61,13 +55,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     teacher.teach("wave", WAVES)
     teacher.ask("create_set", set="garden")
     return teacher.folder
-
-
-@pytest.fixture
-def room(taught: Path, tmp_path: Path) -> Iterator[Lesson]:
-    shutil.copytree(taught, tmp_path / "copy")
-    with lesson(tmp_path / "copy") as made:
-        yield made
 
 
 @pytest.fixture

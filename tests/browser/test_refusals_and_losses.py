@@ -1,6 +1,5 @@
 """What is refused, lost or wrong in one place ends nothing else: the page says so, and goes on."""
 
-import shutil
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,7 +11,7 @@ from actum.commands import Refusal
 from actum.messages import Info, Segment
 from actum.runtime.client import NotAnsweredError
 from dashboards import Colleague, served
-from lessons import SET, Lesson, lesson
+from lessons import SET, Lesson
 from live import wait_until
 from model_trainer.job_process import Ended
 from node_cases import photograph
@@ -35,14 +34,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     teacher.ask("create_set", set=SET)
     teacher.teach("wave", WAVES)
     return teacher.folder
-
-
-@pytest.fixture
-def room(taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Lesson]:
-    monkeypatch.setattr("web_dashboard.application.DESCRIBING_S", 0.2)
-    shutil.copytree(taught, tmp_path / "copy")
-    with lesson(tmp_path / "copy") as made:
-        yield made
 
 
 def live(page: Any) -> Any:

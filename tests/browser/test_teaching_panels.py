@@ -1,15 +1,14 @@
 """The panels on which people teach: recording, mending, training, testing, models, parameters; and hostile input."""
 
 import re
-import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from accessibility import serious_faults
-from lessons import SET, Lesson, lesson
+from lessons import SET, Lesson
 from live import wait_until
 from model_trainer.job_process import Progressing
 from recognisers import tiny_model
@@ -30,14 +29,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     teacher.teach("wave", WAVES)
     teacher.teach("goggles", GOGGLINGS, person="bert")
     return teacher.folder
-
-
-@pytest.fixture
-def room(taught: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Lesson]:
-    monkeypatch.setattr("web_dashboard.application.DESCRIBING_S", 0.2)
-    shutil.copytree(taught, tmp_path / "copy")
-    with lesson(tmp_path / "copy") as made:
-        yield made
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """An object's track: little lag, a velocity, one outlier ignored, carried on for a moment while covered."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -116,6 +117,16 @@ def test_one_measurement_far_off_is_not_believed_but_two_are_unless_they_contrad
     assert tracks.update(stamp(11), [second := measured(pose([*second_m, 1.5]))]) == ([] if agrees else [second])
     assert tracks.update(stamp(12), [measured(pose([believed_m, 0.0, 1.5]))]) == []
     assert tracks.listed(stamp(12))[0].position_m[0] == pytest.approx(believed_m, abs=0.001)
+
+
+def test_a_hidden_object_is_believed_in_a_nearer_place_than_a_seen_one() -> None:
+    """Its occluder may be followed in the wrong place: beyond 4 standard deviations it stays where it was."""
+    for hidden in (False, True):
+        tracks = Tracks(MEMORY_NS)
+        for i in range(30):
+            tracks.update(stamp(i), [measured(pose([0.0, 0.0, 1.5]))])
+        away = replace(measured(pose([0.026, 0.0, 1.5])), hidden=hidden)
+        assert bool(tracks.update(stamp(30), [away])) is hidden
 
 
 def test_an_object_rejoins_at_once_wherever_it_comes_back() -> None:

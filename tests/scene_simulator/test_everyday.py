@@ -30,6 +30,15 @@ def states(idle: Scene) -> list[SceneState]:
     return list(idle.states())
 
 
+def test_the_doings_are_those_beside_which_the_shipped_model_was_trained(
+    states: list[SceneState], request: pytest.FixtureRequest
+) -> None:
+    """Where this fails on purpose, `make simulated-model` trains the model anew."""
+    expected = (-0.0844212959, 0.3892009612, -1.4063052106)[request.node.callspec.params["idle"]]
+    numbers = np.concatenate([[*state.joints_m.ravel(), *state.positions_m.ravel()] for state in states])
+    assert numbers @ np.cos(np.arange(len(numbers))) == pytest.approx(expected, abs=1e-6)
+
+
 @pytest.fixture(scope="module")
 def busy() -> list[SceneState]:
     return list(Scene(balanced_programme(3, 4), 1, 4, everyday=Everyday()).states())

@@ -7,6 +7,7 @@ import pytest
 from actum.arrays import Array
 from scene_simulator.parameters import load_parameters
 from scene_simulator.programme import Task
+from scene_simulator.props import RISER_COLOUR
 from scene_simulator.random_streams import random_stream
 from scene_simulator.render import Renderer
 from scene_simulator.simulated_scene import Scene, SceneState
@@ -117,3 +118,18 @@ def test_the_grain_changes_from_image_to_image_and_the_scene_does_not(
     assert first.shape == (480, 640, 3)
     assert np.any(first != second)
     np.testing.assert_array_equal(renderer.clean_image(free[0]), renderer.clean_image(free[0]))
+
+
+def test_a_riser_is_drawn_as_high_as_its_top_and_none_where_that_is_the_table(
+    scene: Scene, free: list[SceneState]
+) -> None:
+    def drawn(height_m: float) -> int:
+        """Count the pixels of risers under objects that stand on them."""
+        tops_m, positions_m = free[0].riser_tops_m.copy(), free[0].positions_m.copy()
+        positions_m[:, 1] += scene.parameters.table_y_m - height_m - tops_m[:, 1]
+        tops_m[:, 1] = scene.parameters.table_y_m - height_m
+        raised = replace(free[0], riser_tops_m=tops_m, positions_m=positions_m)
+        image = Renderer(scene, random_stream("test")).clean_image(raised)
+        return int((image == RISER_COLOUR).all(axis=-1).sum())
+
+    assert 10 * drawn(0.0) < drawn(0.05) < drawn(0.1)
