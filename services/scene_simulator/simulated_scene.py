@@ -148,7 +148,11 @@ class Scene:
             done = self._acting(trial, number)
             yield done
             return_s = pause.return_share * trial.pause_s
-            yield resetting(self.parameters, done, following[number], pauses[number], return_s)
+            yield from self.pause(done, following[number], pauses[number], return_s)
+
+    def pause(self, done: Episode, following: Layout, seconds: float, return_s: float) -> Iterator[Episode]:
+        """Yield the pause after an action: hands and objects move to the layout of what follows."""
+        yield resetting(self.parameters, done, following, seconds, return_s)
 
     def _acting(self, trial: Trial, number: int) -> Episode:
         """Return the episode of one repetition, done with the actor's preferred hand."""
