@@ -8,7 +8,6 @@ import numpy as np
 from benchmarks.rig.hard_scenes.conditions import Conditions
 from benchmarks.rig.hard_scenes.hard_scene import HardScene
 from benchmarks.rig.hard_scenes.hard_simulator import HardSimulator
-from typing_extensions import override
 
 from actum.messages import Action, Message, Truth
 from actum.node import SECOND_NS
@@ -38,7 +37,6 @@ class ReturningScene(HardScene):
 
     way: Way = "left there"
 
-    @override
     def pause(self, done: Episode, following: Layout, seconds: float, return_s: float) -> Iterator[Episode]:
         """Yield the way back, a rest, and the arrangement of what follows."""
         assert done.trial is not None
