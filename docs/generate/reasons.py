@@ -139,8 +139,8 @@ OF_FRAMES: Mapping[str, Problem] = {
         "OpenNI 2 finds no camera.", "Install the camera's driver; see [cameras](cameras.md#depth-cameras)."
     ),
     "… was unplugged": Problem("The OpenNI device was unplugged.", "Plug it in."),
-    "OpenNI cannot play the file, because another driver in its folder took the file for a camera: remove that "
-    "driver from the folder": Problem(
+    "OpenNI cannot play the file, because another driver in OpenNI's driver folder took the file for a camera: "
+    "remove that driver": Problem(
         "A driver that does not play files claims the recording.", "Remove that driver from OpenNI's folder."
     ),
     "the camera lacks colour or depth images: use a camera that has both": Problem(

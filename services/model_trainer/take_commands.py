@@ -114,9 +114,8 @@ class TakeCommands:
             anew = Record(set=request.set, label=label, person=newest.person, count=count)
         except ValidationError as error:
             raise Refusal(
-                f"the newest recording {newest.id} cannot be made again, because its label or person is not allowed "
-                f"({problems(error)}): change the label of its examples, delete its examples, or start a new recording "
-                "with the command 'record'"
+                f"the newest recording {newest.id} cannot be repeated, because its label or person is not allowed "
+                f"({problems(error)}): start a new recording with the command 'record'"
             ) from None
         self._begin(anew)
         self._replaced = newest.id

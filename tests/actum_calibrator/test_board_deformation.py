@@ -29,6 +29,7 @@ def views_of(board: Board, heights_m: tuple[float, float, float], seed: int = 0)
     return views
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("heights_m", [(0.0016, 0.0, 0.0), (0.0, 0.0, -0.0025), (0.0012, 0.001, 0.0012)])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_bent_board_tells_the_true_focal_length(board: Board, heights_m, seed: int) -> None:

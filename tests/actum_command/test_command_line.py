@@ -231,6 +231,7 @@ def broken_off(examples: Path) -> Path:
     return path
 
 
+@pytest.mark.thorough
 def test_training_and_evaluating_name_the_recording_that_breaks_off(broken_off: Path, tmp_path: Path) -> None:
     model = tmp_path / "m.npz"
     for command in (["train", broken_off, "-o", model, "--preset", "paper"], ["evaluate", model, broken_off]):

@@ -60,6 +60,7 @@ def files_of(folder: Path) -> set[Path]:
     return {file for file in folder.iterdir() if file.suffix in {".png", ".svg", ".html"}}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("ending", ["png", "svg"])
 def test_pictures_of_an_earlier_run_leave_the_folder(tmp_path: Path, ending: str) -> None:
     """Another model, another recording, another format: every picture that is there belongs to the page."""

@@ -49,6 +49,7 @@ def test_marked_stillness_is_never_a_sure_known_action(taught: Model, jitter: st
     assert all(answer.unknown for answer in answers)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("actor", STILL)
 def test_the_actions_themselves_are_known(taught: Model, actor: int) -> None:
     scene = Simulator(balanced_programme(1, 2, actor), actor, 2, image_hz=0)

@@ -103,6 +103,7 @@ def many_actions(labels: list[str]) -> PaperMaps:
     return PaperMaps(PaperModel(paper_model().layer1, layer2, layer3, PaperMetadata.model_validate(about)))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "labels",
     [

@@ -103,6 +103,7 @@ def test_a_clock_that_runs_backwards_for_long_loses_the_take(teacher: Teacher, f
     assert "restarted during the recording" in teacher.tick().recording.doubts[0]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("stamp_ns", WRONG)
 @pytest.mark.parametrize("kinds", [("start",), ("end",), ("start", "end")])
 def test_a_recorded_mark_outside_of_the_frames_is_skipped_and_counted(

@@ -268,6 +268,7 @@ SETTING = [
 ]  # fmt: skip
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("service", "setting"), SETTING)
 def test_no_value_of_a_setting_ends_or_mutes_a_service(service: str, setting: str) -> None:
     with desk_of(service) as desk:
@@ -306,6 +307,7 @@ PAYLOADS = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("payload", "encoding"), PAYLOADS.values(), ids=PAYLOADS.keys())
 @pytest.mark.parametrize("service", BUILDERS)
 def test_what_one_of_the_encodings_cannot_hold_is_refused_before_any_command_sees_it(

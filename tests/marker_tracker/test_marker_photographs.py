@@ -53,6 +53,7 @@ def found(data: Path, name: str, families: tuple[str, ...]) -> list[Marker]:
     return MarkerDetector(dict.fromkeys(families, ())).search(pixels)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("name", "ids"), MARKERS.items())
 def test_every_marker_is_found_and_no_false_one_with_all_families_searched(data, name, ids) -> None:
     family = "DICT_APRILTAG_36H11" if name.startswith("dt") else "DICT_5X5_1000"

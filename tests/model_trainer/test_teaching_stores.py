@@ -289,7 +289,11 @@ def test_a_film_of_a_take_that_has_just_vanished_is_refused(teacher: Teacher, mo
 @pytest.mark.parametrize(
     ("place", "end"),
     [(place, "stop") for place in (*GONE, "sets/.making", "sets/kitchen/set.json")]
-    + [(place, end) for place in ("sets/kitchen", "sets/.making", ".") for end in ("discard", "frames")],
+    + [
+        pytest.param(place, end, marks=pytest.mark.thorough)
+        for place in ("sets/kitchen", "sets/.making", ".")
+        for end in ("discard", "frames")
+    ],
 )
 def test_a_take_whose_folder_vanishes_is_lost_with_the_reason_and_another_can_be_recorded(
     teacher: Teacher, place: str, end: str

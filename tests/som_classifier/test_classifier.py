@@ -163,6 +163,7 @@ class Reload:
         self.after = live(node, scene()[at:])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("first", [None, TINY, TINY_PAPER], ids=["none", "tiny", "tiny paper"])
 @each_preset
 @pytest.mark.parametrize("at", [1, 12, 33])

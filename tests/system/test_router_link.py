@@ -138,7 +138,10 @@ def cut_for_long(link: TcpProxy, over: threading.Event) -> None:
     link.mend()
 
 
-OFTEN = (undisturbed, pytest.param(cut_now_and_then, marks=pytest.mark.thorough), cut_for_long)
+OFTEN = (
+    cut_for_long,
+    *(pytest.param(disturb, marks=pytest.mark.thorough) for disturb in (undisturbed, cut_now_and_then)),
+)
 SELDOM = (pytest.param(delayed, marks=pytest.mark.long), pytest.param(stalling, marks=pytest.mark.long))
 
 

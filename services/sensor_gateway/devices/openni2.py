@@ -106,8 +106,8 @@ def _opened_file(openni2: Any, path: Path) -> Any:
     if device.playback is None:
         device.close()
         raise CameraLostError(
-            "OpenNI cannot play the file, because another driver in its folder took the file for a camera: remove that "
-            "driver from the folder"
+            "OpenNI cannot play the file, because another driver in OpenNI's driver folder took the file for a camera: "
+            "remove that driver"
         )
     device.playback.set_repeat_enabled(False)
     device.playback.set_speed(MANUAL)
