@@ -143,8 +143,8 @@ def _remarks(name: str, status: Status) -> Iterator[str]:
         )
     if ignored := status.counts.get(MARKS_IGNORED):
         yield (
-            f"{name} rejected {ignored} start and end marks of actions, because it runs with --segments auto: restart "
-            f"{name} with --segments both to accept marks as well"
+            f"{name} has rejected {ignored} start and end marks of actions while its setting segments was auto: to "
+            "accept marks, set it to both on the page under Parameters, or start with --segments both"
         )
     yield from (f"{name}: {remark}" for remark in State.remarks(status.state))
 
