@@ -42,7 +42,7 @@ first-event:  ## seconds from a clone in an empty folder to the first event of t
 up: $(RUNS)  ## router and all services, until Ctrl-C
 	$(BIN)/actum up
 
-test: check  ## static checks, then the tests that notice nearly every mistake; five minutes
+test: check  ## static checks, then most tests; five minutes on two cores
 	$(BIN)/pytest -n 6 --dist worksteal
 
 test-thorough: $(STAMP)  ## the tests of the web page, of benchmarks, and the same as make test in more variations

@@ -17,7 +17,7 @@ import chromium
 from actum.som.sequential import fastest_kernel
 
 settings.register_profile("patient", deadline=None, max_examples=30)
-settings.register_profile("ci", settings.get_profile("patient"), derandomize=True)
+settings.register_profile("ci", settings.get_profile("patient"), derandomize=True, max_examples=50)
 settings.load_profile("ci" if os.environ.get("CI") else "patient")
 
 NEEDS_DATA = "recordings not found: set ACTUM_DATA to the folder that holds msr_action3d/ and utkinect/"

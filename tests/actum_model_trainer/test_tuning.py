@@ -83,7 +83,8 @@ def test_the_sensitivities_find_different_numbers_of_actions(trial: Trial) -> No
     "options",
     [
         SpottingOptions(),
-        SpottingOptions(1.0, shortest_pause_s=0.3),
+        *(pytest.param(SpottingOptions(rate), marks=pytest.mark.thorough) for rate in (4.0, 2.0, 1.0)),
+        SpottingOptions(shortest_pause_s=0.3),
         SpottingOptions(2.0, cooldown_s={"lift": 3.0, "push": 1.0}),
         SpottingOptions(4.0, disabled=frozenset({"lift"})),
     ],

@@ -119,7 +119,7 @@ def test_one_measurement_far_off_is_not_believed_but_two_are_unless_they_contrad
     assert tracks.listed(stamp(12))[0].position_m[0] == pytest.approx(believed_m, abs=0.001)
 
 
-def test_a_hidden_object_is_believed_in_a_nearer_place_than_a_seen_one() -> None:
+def test_a_measurement_far_off_is_held_back_sooner_of_a_hidden_object_than_of_a_seen_one() -> None:
     """Its occluder may be followed in the wrong place: beyond 4 standard deviations it stays where it was."""
     for hidden in (False, True):
         tracks = Tracks(MEMORY_NS)
