@@ -35,7 +35,7 @@ ALL = "all"
 def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     output: Annotated[
         Path,
-        typer.Argument(help="the recording to write (.mcap); with --events, the folder for the files of the history"),
+        typer.Argument(help="the recording to write (.mcap); with --events, the folder for the files with the events"),
     ],
     person: Annotated[
         str,

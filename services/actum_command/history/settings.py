@@ -28,7 +28,7 @@ class Settings(ServiceSettings):
         None,
         ge=1,
         description=(
-            "only with 'actum record --events': maximum number of finished files of the history; if there are more, "
+            "only with 'actum record --events': maximum number of finished files with events; if there are more, "
             "the oldest are deleted. Default: all files are kept"
         ),
     )
@@ -36,7 +36,7 @@ class Settings(ServiceSettings):
         None,
         gt=0,
         description=(
-            "only with 'actum record --events': maximum total size of the finished files of the history (MB); if the "
+            "only with 'actum record --events': maximum total size of the finished files with events (MB); if the "
             "total is larger, the oldest are deleted. Default: all files are kept"
         ),
     )

@@ -37,8 +37,8 @@ _SHORTEST = 1e-3
 def _nonzero(direction: list[float]) -> list[float]:
     if not _SHORTEST < math.hypot(*direction) < 1 / _SHORTEST:
         raise ValueError(
-            f"the direction {direction} has a length outside of {_SHORTEST:g} to {1 / _SHORTEST:g}: give a direction "
-            "such as [0, -1, 0], which is up for a level camera"
+            f"the direction {direction} is too short or too long: give a direction such as [0, -1, 0], which is up for "
+            "a level camera"
         )
     return direction
 
