@@ -27,7 +27,7 @@ class Settings(ServiceSettings):
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file to start with. The trainer copies it to --model when it first finds this file, and again "
-            "whenever this file changes. It never changes this file. Default: no such file"
+            "a model file to start with. The trainer copies this original to --model, and copies it again whenever the "
+            "original changes. The trainer never changes the original. Default: no such file"
         ),
     )
