@@ -172,6 +172,9 @@ docs: $(STAMP)  ## the pages as a site, in site/index.html; fails on a broken li
 simulated-model: $(STAMP)  ## train the model of the simulated scene anew that comes with actum; about a minute
 	$(BIN)/python -c 'from actum_command.simulated_model import SIMULATED_MODEL, trained; from actum_model_trainer.progress import silent; trained(silent).save(SIMULATED_MODEL)'
 
+background: $(STAMP)  ## make the background anew that training holds against what was taught; half a minute
+	$(BIN)/python -c 'from actum_command.shipped_background import made; from actum_model_trainer.background import SHIPPED, save; save(made(), SHIPPED)'
+
 schemas: $(STAMP)  ## write the JSON Schemas anew
 	$(BIN)/python -m actum.schemas
 
