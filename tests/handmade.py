@@ -3,6 +3,7 @@
 import numpy as np
 
 from actum.som import Som
+from som_classifier.convolutions import COORDINATES, FILTERS, Convolutions, SecondOpinion
 from som_classifier.first_layer import MAP_INPUTS, FirstMaps
 from som_classifier.model import Model
 from som_classifier.paper_model import PaperMetadata, PaperModel
@@ -11,6 +12,7 @@ from som_classifier.pyramid_model import PyramidModel
 from som_classifier.second_layer import ActionMap
 from som_classifier.stage_discriminants import StageDiscriminants
 from som_classifier.supervised import SupervisedLayer
+from som_classifier.verifier import Verifier
 
 POINTS = 3
 LEVELS = [1, 2]
@@ -44,7 +46,8 @@ def pyramid_model(**changes: object) -> PyramidModel:
         "posture_contrast": 0.5, "velocity_contrast": 0.1, "arm_contrast": 0.2, "arm_shares": [0.4, 0.1],
         "mirrors": True,
         "levels": LEVELS, "overlap": 0.25, "fractions": FRACTIONS, "log_duration_mean": 0.5, "log_duration_sd": 0.4,
-        "concept_contrast": 2.0, "gains": [4.0, 8.0], "familiar": 0.3,
+        "concept_contrast": 2.0, "gains": [4.0, 8.0], "verification": [10.0, -3.0],
+        "least_likeness": 0.2, "least_found_likeness": 0.3, "opinion_weight": 0.5,
         "usual_log_errors": [-2.5, -2.0],
     }  # fmt: skip
     metadata = PyramidMetadata.model_validate(PROVENANCE | about | changes)
@@ -60,7 +63,15 @@ def pyramid_model(**changes: object) -> PyramidModel:
         metadata.log_duration_sd,
     )
     action_map = ActionMap(maps[3], metadata.concept_contrast, (0.1 * rng.random(9)).astype(np.float32))
-    return PyramidModel(first, stages, action_map, SupervisedLayer.random(2, 9, rng), metadata)
+    layer3 = SupervisedLayer.random(2, 9, rng)
+    coordinates = rng.integers(2, size=(FILTERS, COORDINATES)).astype(np.float32)
+    convolutions = Convolutions(coordinates, rng.normal(size=(FILTERS, 2)).astype(np.float32))
+    looked_at, *offsets = (rng.normal(size=shape).astype(np.float32) for shape in ((2 * FILTERS, 2), 2, 2))
+    opinion = SecondOpinion(convolutions, looked_at, offsets[0], metadata.opinion_weight)
+    least = metadata.least_likeness, metadata.least_found_likeness
+    calibrated = metadata.usual_log_errors, *metadata.verification, *least
+    verifier = Verifier(axes[1], looked_at, offsets[1], *calibrated)
+    return PyramidModel(first, stages, opinion, verifier, action_map, layer3, metadata)
 
 
 KINDS: dict[str, type[Model]] = {"paper": PaperModel, "pyramid": PyramidModel}

@@ -157,7 +157,13 @@ def warped_m(examples: Paths, path: Paths) -> NDArray[np.float64]:
     return means_m
 
 
-def train(samples: Sequence[SegmentSample], preset: NearestPreset, seed: int, progress: Progress) -> NearestModel:
+def train(
+    samples: Sequence[SegmentSample],
+    _background: Sequence[LabelledStream],
+    preset: NearestPreset,
+    seed: int,
+    progress: Progress,
+) -> NearestModel:
     labels = actions_of(samples)
     ways = [np.nan_to_num(sample.postures[:, SEEN]).reshape(len(sample.postures), -1) for sample in samples]
     examples = np.stack([resampled(way, preset.points) for way in ways])

@@ -7,7 +7,7 @@ from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
 from som_classifier.attention import MOVING, PostureInput
-from som_classifier.presets import BodyVariation, MapTraining, PaperPreset, Prior, PyramidPreset
+from som_classifier.presets import BodyVariation, ConvolutionPreset, MapTraining, PaperPreset, Prior, PyramidPreset
 from som_classifier.spotting.spotting_preset import SpottingPreset
 
 FRAMES = 20
@@ -38,8 +38,19 @@ TINY = PyramidPreset(
     relative_concept_contrast=40.0,
     beta=0.05,
     epochs=5,
+    convolutions=ConvolutionPreset(biases=1, shrinkage=0.3, opinion_weight=0.5, verifier_weight=1.0),
     known_share=0.95,
-    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2, log_error=-2.5),
+    found_share=0.8,
+    background=20,
+    prior=Prior(
+        people=4.0,
+        gain=6.0,
+        gain_where_inferred=4.2,
+        verification=(10.7, -5.2, -1.9),
+        least_likeness=(0.2, 0.3),
+        least_from_one=(0.15, 0.25),
+        log_error=-2.5,
+    ),
     spotting=SpottingPreset(
         interval_s=0.1,
         lag_s=0.2,

@@ -1,4 +1,4 @@
-"""Calibration of a model: inverse temperatures for its confidence, thresholds for unknown actions and for stillness.
+"""Calibration of a model: inverse temperatures of its confidence, probability of a true instance, least movement.
 
 The first two are estimated on cross-validated scores, which show how well the model does on people it was not trained
 on. Few people show little of that, a single one nothing. Therefore each estimate is averaged with the value for models
@@ -19,7 +19,7 @@ from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
 from som_classifier.first_layer import FirstMaps
 from som_classifier.kinematics import movement_m
-from som_classifier.presets import Prior, PyramidPreset
+from som_classifier.presets import Prior
 
 LEAST_MOVEMENT_SHARE = 0.5
 """Share of an action's usual movement below which another person hardly does it. Of the actions of four public sets, at
@@ -43,7 +43,7 @@ def inverse_temperatures(
     """
     expected = prior.gain_where_inferred if depth_inferred else prior.gain
     matched = np.array([cross_validated_inverse_temperature(stage, upper) for stage in stages])
-    averaged = np.exp(_averaged_with_prior(np.log(matched), np.log(expected), prior, people))
+    averaged = np.exp(averaged_with_prior(np.log(matched), np.log(expected), prior, people))
     return [float(inverse_temperature) for inverse_temperature in np.minimum(matched, averaged)]
 
 
@@ -57,25 +57,6 @@ def cross_validated_inverse_temperature(stage: FittedStage, upper: UpperLayers) 
     scores = stage.discriminants.cross_validated_scores
     right = int((scores.argmax(axis=1) == stage.targets).sum())
     return matched_inverse_temperature(upper.cosines(scores), (right + 1) / (len(stage.targets) + 2))
-
-
-def familiarity_threshold(scores: Floats, samples: Sequence[SegmentSample], preset: PyramidPreset) -> float:
-    """Return the open-set threshold: a segment of lower familiarity may be none of the trained actions.
-
-    Familiarity is an open-set score: a segment's largest score, lowered where its postures are unlike those of the
-    action (`familiarity_of` in som_classifier). The threshold is the quantile that a share `preset.known_share` of the
-    known actions exceeds.
-
-    Args:
-        scores: (n, actions), cross-validated.
-        samples: of the training.
-        preset: with the share and the prior.
-    """
-    prior, people = preset.prior, len({sample.person for sample in samples})
-    one_sample_each = len({(sample.person, sample.label) for sample in samples}) == len(samples)
-    exceeded = np.quantile(scores.max(axis=1), 1 - preset.known_share)
-    expected = prior.familiar_from_one if one_sample_each else prior.familiar
-    return float(_averaged_with_prior(exceeded, expected, prior, people))
 
 
 def expected_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: Indices, prior: Prior) -> list[float]:
@@ -107,6 +88,6 @@ def least_movement_m(samples: Sequence[SegmentSample]) -> float:
     return round(LEAST_MOVEMENT_SHARE * min(median(of_action) for of_action in movements.values()), 4)
 
 
-def _averaged_with_prior(estimate: Any, expected: Any, prior: Prior, people: int) -> Any:
+def averaged_with_prior(estimate: Any, expected: Any, prior: Prior, people: int) -> Any:
     """Return the mean of both, the estimate weighted by the people beyond the first: one shows no differences."""
     return (prior.people * expected + (people - 1) * estimate) / (prior.people + people - 1)

@@ -25,12 +25,16 @@ class Discriminants:
         training_scores: (n, actions).
         cross_validated_scores: (n, actions), from discriminants fitted without the vector's fold; the training score
             where no other fold holds the vector's action.
+        untaught_scores: (n, actions), from discriminants fitted without the vector's action, as if untaught.
+        background_scores: (m, actions), of the background's vectors, from discriminants fitted without the vector.
     """
 
     axes: NDArray[np.float32]
     offsets: NDArray[np.float32]
     training_scores: Array
     cross_validated_scores: Array
+    untaught_scores: Array
+    background_scores: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,27 +71,42 @@ def folds_of(samples: Sequence[SegmentSample]) -> Indices:
 
 
 def fit_discriminants(
-    vectors: NDArray[np.float32], indicators: Array, folds: Indices, shrinkage: float
+    vectors: NDArray[np.float32],
+    indicators: Array,
+    folds: Indices,
+    shrinkage: float,
+    background: NDArray[np.float32] | None = None,
 ) -> Discriminants:
     """Fit scores = vectors · axes + offsets to indicators, minimising squared error + penalty × ‖axes‖².
 
-    The axes are sought in the span of the vectors (`dual_form`), so that one inverse of their n × n inner products
-    serves all folds.
+    The axes are sought in the span of the vectors (`dual_form`), so that one inverse of their inner products serves all
+    folds.
 
     Args:
         vectors: (n, inputs).
         indicators: (n, actions), 1 for the action done, else 0.
         folds: (n,), from `folds_of`.
         shrinkage: relative penalty.
+        background: (m, inputs), vectors of movement that is none of the actions: all their indicators are 0.
     """
+    count = len(vectors)
+    if background is not None:
+        vectors = np.concatenate([vectors, background])
+        indicators = np.concatenate([indicators, np.zeros((len(background), indicators.shape[1]))])
     mean, centred, products, penalty = dual_form(vectors, shrinkage)
     inverse = np.linalg.inv(products + penalty * np.eye(len(products)))
     intercept: Array = indicators.mean(axis=0)
     dual = inverse @ (indicators - intercept)
     axes = centred.T @ dual.astype(np.float32)
-    training_scores = products @ dual + intercept
-    cross_validated = _cross_validated(training_scores, inverse, indicators, folds)
-    return Discriminants(axes, (intercept - mean @ axes).astype(np.float32), training_scores, cross_validated)
+    fitted = products @ dual + intercept
+    return Discriminants(
+        axes,
+        (intercept - mean @ axes).astype(np.float32),
+        fitted[:count],
+        _cross_validated(fitted, inverse, indicators, folds),
+        _untaught(inverse, indicators, count),
+        _each_left_out(inverse, indicators, count),
+    )
 
 
 def dual_form(
@@ -104,10 +123,14 @@ def dual_form(
 
 
 def _cross_validated(training_scores: Array, inverse: Floats, indicators: Array, folds: Indices) -> Array:
-    """Return the scores (n, actions), cross-validated for all vectors whose action occurs in another fold, too."""
-    scores = training_scores.copy()
+    """Return the scores (n, actions), cross-validated for all vectors whose action occurs in another fold, too.
+
+    Rows beyond the n folds are background, which is fitted to in every fold.
+    """
+    scores, rows = training_scores[: len(folds)].copy(), np.arange(len(indicators))
     for fold in np.unique(folds):
-        fitted, held_out = np.flatnonzero(folds != fold), np.flatnonzero(folds == fold)
+        held_out = np.flatnonzero(folds == fold)
+        fitted = np.delete(rows, held_out)
         fitted_actions = np.flatnonzero(indicators[fitted].any(axis=0))
         scorable = indicators[np.ix_(held_out, fitted_actions)].any(axis=1)
         if scorable.any():
@@ -123,4 +146,23 @@ def _held_out_scores(inverse: Floats, indicators: Array, fitted: Indices, held_o
     intercept: Array = indicators[fitted].mean(axis=0)
     product = inverse[np.ix_(held_out, fitted)] @ (indicators[fitted] - intercept)
     scores: Array = intercept - np.linalg.solve(inverse[np.ix_(held_out, held_out)], product)
+    return scores
+
+
+def _untaught(inverse: Floats, indicators: Array, count: int) -> Array:
+    """Return the scores (count, actions) of the first rows by discriminants that were fitted without their action."""
+    scores, rows = np.zeros((count, indicators.shape[1])), np.arange(len(indicators))
+    for of_action in indicators[:count].T:
+        held_out = np.flatnonzero(of_action)
+        scores[held_out] = _held_out_scores(inverse, indicators, np.delete(rows, held_out), held_out)
+    return scores
+
+
+def _each_left_out(inverse: Floats, indicators: Array, count: int) -> Array:
+    """Return the scores of the rows from `count` on by discriminants fitted without that row, but with its mean.
+
+    By the leave-one-out formula of ridge regression: the residual grows by 1 / (1 - leverage).
+    """
+    residuals = (inverse @ (indicators - indicators.mean(axis=0)))[count:] / np.diag(inverse)[count:, None]
+    scores: Array = indicators[count:] - residuals
     return scores

@@ -11,7 +11,7 @@ from actum.som import Som
 from actum_model_trainer.median_distances import median_neighbour_distance2, median_quantization_error2
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, provenance
-from actum_model_trainer.samples import SegmentSample
+from actum_model_trainer.samples import LabelledStream, SegmentSample
 from som_classifier.attention import PostureInput
 from som_classifier.map_activity import MapActivity, map_activity, ordered_vector, soft_activity, trajectory
 from som_classifier.paper_model import PaperMetadata, PaperModel
@@ -54,8 +54,16 @@ class _AttendedSample:
         return trajectory(MapActivity(winners, centres))
 
 
-def train(samples: Sequence[SegmentSample], preset: PaperPreset, seed: int, progress: Progress) -> PaperModel:
+def train(
+    samples: Sequence[SegmentSample],
+    _background: Sequence[LabelledStream],
+    preset: PaperPreset,
+    seed: int,
+    progress: Progress,
+) -> PaperModel:
     """Train the three layers, one after the other; the same samples, preset and seed make the same model.
+
+    The paper knows no background.
 
     Raises:
         TrainingError: fewer than two actions among the samples.

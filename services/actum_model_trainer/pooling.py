@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,8 +14,20 @@ from som_classifier.first_layer import FirstMaps
 from som_classifier.frame_activity import UM_PER_M
 from som_classifier.pyramid import Prefix, PrefixSums, Pyramid, quantised
 
-PooledVectors = tuple[NDArray[np.float32], Indices]
-"""Vectors (n, inputs), one for each variant and share of an action, and the index of the sample of each, (n,)."""
+
+class PooledVectors(NamedTuple):
+    """One vector for each variant and share of an action.
+
+    Attributes:
+        vectors: (n, inputs).
+        sample_indices: (n,), the sample of each.
+        variant_indices: (n,), which of its variants.
+    """
+
+    vectors: NDArray[np.float32]
+    sample_indices: Indices
+    variant_indices: Indices
+
 
 MAX_VECTORS = 2_000  # per stage: more make the discriminants hardly better, and their training costs n³
 MIN_FRAMES = 3  # of a share of an action: with fewer the live classifier gives no answer either
@@ -43,7 +56,7 @@ class Pooling:
             stages: the shares of an action (0 to 1) that belong to each stage.
         """
         rows: list[list[Floats]] = [[] for _ in stages]
-        sample_indices: list[list[int]] = [[] for _ in stages]
+        of_row: list[list[tuple[int, int]]] = [[] for _ in stages]
         for index, (sample, of_sample) in enumerate(zip(samples, variants, strict=True)):
             sums = _VariantSums(self, sample, of_sample)
             for stage, fractions in enumerate(stages):
@@ -51,8 +64,24 @@ class Pooling:
                 step = min(-(-len(samples) * len(pairs) // MAX_VECTORS), len(pairs))
                 for fraction, variant in pairs[index % step :: step]:
                     rows[stage].append(self._pyramid.vector(sums.until(variant, fraction)))
-                    sample_indices[stage].append(index)
-        return [(np.stack(vectors), np.array(indices)) for vectors, indices in zip(rows, sample_indices, strict=True)]
+                    of_row[stage].append((index, variant))
+        return [
+            PooledVectors(np.stack(vectors), *np.array(indices).T)
+            for vectors, indices in zip(rows, of_row, strict=True)
+        ]
+
+    def of_background(
+        self, windows: Sequence[SegmentSample], variants: Sequence[Sequence[Variant]]
+    ) -> NDArray[np.float32]:
+        """Return the vectors (windows, inputs) of movement that nobody taught, each of its only variant."""
+        if not windows:
+            return np.zeros((0, self._pyramid.cells * self.first.units), np.float32)
+        return np.stack(
+            [
+                self._pyramid.vector(_VariantSums(self, window, of_window).until(0, 1.0))
+                for window, of_window in zip(windows, variants, strict=True)
+            ]
+        )
 
 
 class _VariantSums:

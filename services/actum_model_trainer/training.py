@@ -6,6 +6,7 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from actum_model_trainer import paper_training, pyramid_training
+from actum_model_trainer.background import shipped
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream, SegmentSample
@@ -16,23 +17,31 @@ from som_classifier.presets import Preset
 __all__ = ["SEARCHES", "TRAININGS", "TrainingError", "train", "train_to_spot"]
 
 
-TRAININGS: dict[str, Callable[[Sequence[SegmentSample], Any, int, Progress], Model]] = {
+TRAININGS: dict[str, Callable[[Sequence[SegmentSample], Sequence[LabelledStream], Any, int, Progress], Model]] = {
     "paper": paper_training.train,
     "pyramid": pyramid_training.train,
 }
-"""The training of each kind of model, with a preset of that kind and a seed."""
+"""The training of each kind of model on samples and background, with a preset of that kind and a seed."""
 SEARCHES: dict[str, Callable[[Any, Sequence[LabelledStream], Any, int, Progress], Model]] = {"pyramid": with_spotting}
 """For each kind of model that finds actions without marks: adds the search to a trained model."""
 
 
-def train(samples: Sequence[SegmentSample], preset: Preset, seed: int = 0, progress: Progress = silent) -> Model:
-    """Train a model; the same samples, preset and seed make the same model, to the bit on the same machine.
+def train(
+    samples: Sequence[SegmentSample],
+    preset: Preset,
+    seed: int = 0,
+    progress: Progress = silent,
+    background: Sequence[LabelledStream] | None = None,
+) -> Model:
+    """Train a model; the same arguments make the same model, to the bit on the same machine.
+
+    `background` is movement that nobody taught: that which comes with actum (None), other streams, or none.
 
     Raises:
         TrainingError: fewer than two actions among the samples.
     """
     with threadpool_limits(1, user_api="blas"):  # two threads of BLAS round differently from one
-        return TRAININGS[preset.kind](samples, preset, seed, progress)
+        return TRAININGS[preset.kind](samples, shipped() if background is None else background, preset, seed, progress)
 
 
 def train_to_spot(
@@ -41,13 +50,14 @@ def train_to_spot(
     preset: Preset,
     seed: int = 0,
     progress: Progress = silent,
+    background: Sequence[LabelledStream] | None = None,
 ) -> Model:
     """Train a model that also finds actions without marks, where its kind can.
 
     Raises:
         TrainingError: fewer than two actions among the samples.
     """
-    model, search = train(samples, preset, seed, progress), SEARCHES.get(preset.kind)
+    model, search = train(samples, preset, seed, progress, background), SEARCHES.get(preset.kind)
     if search is None:
         return model
     with threadpool_limits(1, user_api="blas"):

@@ -34,7 +34,8 @@ class Recognition:
         activations: every neuron's cosine by action.
         part: the body part that moves most.
         familiarity: how similar the segment is to what was trained; None where the model cannot tell.
-        unknown: whether its familiarity is so low that the action may be none of those trained.
+        unknown: whether the action may be none of those trained.
+        doubtful: whether it is so unlike its action that it is not published where nobody marked it.
     """
 
     label: str
@@ -43,6 +44,7 @@ class Recognition:
     part: str
     familiarity: float | None = None
     unknown: bool = False
+    doubtful: bool = False
 
 
 class ModelMetadata(BaseModel):

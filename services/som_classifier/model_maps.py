@@ -8,7 +8,6 @@ import numpy as np
 from pydantic import BaseModel
 
 from actum.arrays import Floats, Indices
-from actum.node import SECOND_NS
 from actum.som import Som
 from som_classifier.attention import ALL
 from som_classifier.frames import Frame
@@ -95,10 +94,7 @@ class PyramidMaps(ModelMaps):
 
     def action_unit(self, frames: Sequence[Frame]) -> int:
         """Return the second map's winner for a complete segment of encoded frames."""
-        seconds = (frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS
-        weights = self.model.stages.weights(seconds, complete=True)
-        scores = self.model.scores([frame.activity for frame in frames], weights)
-        return self.actions.bmu(scores)
+        return self.model.action_unit(frames)
 
     def unit_cosines(self) -> Floats:
         """Return the neurons' cosines for the weights of each unit of the second map as input, (units, actions)."""

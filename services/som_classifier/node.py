@@ -179,12 +179,12 @@ class SomClassifier:
     def _fate(self, closed: ClosedSegment, recognition: Recognition | None, search: Search) -> str:
         """Decide what becomes of a segment that was found: `told`, or why it is not.
 
-        The search knows no more of other doings than the background it was trained on; what it never saw the
-        recogniser may still call unknown. The user's options hold for the action that would be published.
+        The search knows no more of other doings than the background it was trained on; what it never saw is unlike
+        what was taught. The user's options hold for the action that would be published.
         """
         if recognition is None:
             return "unanswerable"
-        if recognition.unknown:
+        if recognition.unknown or recognition.doubtful:
             return "unknown"
         if self._segmenter.is_marked(closed.agent, closed.start_ns, closed.end_ns):
             return "marked"

@@ -49,8 +49,10 @@ class Prior:
         people: its weight, as a number of people beyond the first of those trained on.
         gain: inverse temperature of the softmax of cosines.
         gain_where_inferred: the same where distances were inferred from an image and a standard body's size.
-        familiar: the familiarity that most segments of known actions exceed.
-        familiar_from_one: the same where no person has performed an action more than once: scores are lower then.
+        verification: of the logistic regression of whether a segment is a true instance of its action: slope on its
+            likeness, slope on `STRANGE_QUANTILE` of the likeness of what was left out of training, and intercept.
+        least_likeness: the likenesses that true instances exceed, shares `known_share` and `found_share` of them.
+        least_from_one: the same where no person has performed an action more than once: they are lower then.
         log_error: the mean log(d²) of postures from the posture map that a person not trained on may well reach with a
             trained action, d in metres over all joints of a standard body.
     """
@@ -58,9 +60,27 @@ class Prior:
     people: float
     gain: float
     gain_where_inferred: float
-    familiar: float
-    familiar_from_one: float
+    verification: tuple[float, float, float]
+    least_likeness: tuple[float, float]
+    least_from_one: tuple[float, float]
     log_error: float
+
+
+@dataclass(frozen=True)
+class ConvolutionPreset:
+    """Of the second opinion and the verifier.
+
+    Attributes:
+        biases: of each filter.
+        shrinkage: of the ridge regression on their features, in units of the mean squared length of these.
+        opinion_weight: of the second opinion's scores beside those of the discriminants.
+        verifier_weight: of the scores on the features in likeness, beside those on the pyramid's vectors.
+    """
+
+    biases: int
+    shrinkage: float
+    opinion_weight: float
+    verifier_weight: float
 
 
 @dataclass(frozen=True)
@@ -144,7 +164,11 @@ class PyramidPreset(Preset):
         relative_concept_contrast: of its soft activity, in units of the scores' mean variance within an action.
         beta: adaptation strength of the third layer.
         epochs: how often the third layer is shown every training vector.
-        known_share: the share of held-out samples that are to count as known actions.
+        convolutions: of the second opinion and the verifier.
+        known_share: the share of true instances that are to count as known.
+        found_share: the share of those that are to be published where nobody marked them. Their variants count, too,
+            of other bodies and turned, which are less like: of those as measured nearly all are.
+        background: windows of movement that nobody taught, which the verifier holds the actions against.
         prior: for calibration.
         spotting: of the search for actions without marks.
     """
@@ -173,7 +197,10 @@ class PyramidPreset(Preset):
     relative_concept_contrast: float
     beta: float
     epochs: int
+    convolutions: ConvolutionPreset
     known_share: float
+    found_share: float
+    background: int
     prior: Prior
     spotting: SpottingPreset
 
@@ -219,8 +246,19 @@ PYRAMID = PyramidPreset(
     relative_concept_contrast=40.0,
     beta=0.05,
     epochs=10,
+    convolutions=ConvolutionPreset(biases=10, shrinkage=0.3, opinion_weight=0.5, verifier_weight=0.75),
     known_share=0.95,
-    prior=Prior(people=4.0, gain=6.0, gain_where_inferred=4.2, familiar=0.28, familiar_from_one=0.2, log_error=-2.5),
+    found_share=0.8,
+    background=300,
+    prior=Prior(
+        people=4.0,
+        gain=6.0,
+        gain_where_inferred=4.2,
+        verification=(10.7, -5.2, -1.9),
+        least_likeness=(0.20, 0.30),
+        least_from_one=(0.15, 0.25),
+        log_error=-2.5,
+    ),
     spotting=SpottingPreset(
         interval_s=0.1,
         lag_s=0.2,

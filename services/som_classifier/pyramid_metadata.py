@@ -26,7 +26,11 @@ class PyramidMetadata(ModelMetadata):
         log_duration_sd: standard deviation of that logarithm.
         concept_contrast: of the action map's soft activity, in squared scores.
         gains: the inverse temperatures of the softmax that turns cosines into probabilities, by stage.
-        familiar: the open-set threshold: with a lower familiarity an action may be none of those trained.
+        verification: slope and intercept of the logistic regression of whether a segment is a true instance of its
+            action on its likeness.
+        least_likeness: with less a segment may be none of the trained actions.
+        least_found_likeness: with less a segment that nobody marked is not published.
+        opinion_weight: of the second opinion's scores beside those of the discriminants.
         usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
             trained on may well reach, d in metres over all joints of a standard body.
         least_movement_m: the least movement of an action: with less a segment may be none of those trained; 0 in files
@@ -47,7 +51,10 @@ class PyramidMetadata(ModelMetadata):
     log_duration_sd: Positive
     concept_contrast: Positive
     gains: list[Positive]
-    familiar: Finite
+    verification: Annotated[list[Finite], Field(min_length=2, max_length=2)]
+    least_likeness: Finite
+    least_found_likeness: Finite
+    opinion_weight: Annotated[float, Field(ge=0, allow_inf_nan=False)]
     usual_log_errors: list[Finite]
     least_movement_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     spotting: PyramidSpottingMetadata | None = None

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import mul
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from actum.arrays import Array, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
+from som_classifier.convolutions import COORDINATES, FILTERS, Convolutions, SecondOpinion, resampled
 from som_classifier.first_layer import CHANNELS, INPUT_SIZES, MAP_INPUTS, Channel, FirstMaps
 from som_classifier.frame_activity import (
     FrameActivity,
@@ -23,6 +24,7 @@ from som_classifier.frame_activity import (
     segment_sums,
 )
 from som_classifier.frames import Frame
+from som_classifier.handedness import mirrored
 from som_classifier.kinematics import movement_m
 from som_classifier.map_activity import soft_activity, without_repeats
 from som_classifier.model import Arrays, Model, Recognition
@@ -32,8 +34,24 @@ from som_classifier.second_layer import ActionMap
 from som_classifier.spotting.pyramid_spotter import PoolingOnce, PyramidSpotter
 from som_classifier.spotting.spotted import Spotter, SpottingOptions
 from som_classifier.spotting.spotting_model import CompletenessHeads, PyramidSpottingMetadata, SpottingModel
-from som_classifier.stage_discriminants import StageDiscriminants, familiarity_of
+from som_classifier.stage_discriminants import StageDiscriminants
 from som_classifier.supervised import SupervisedLayer
+from som_classifier.verifier import Verifier
+
+UPPER = ("concepts", "layer3")
+"""The arrays of the upper layers: a map, which checks itself, and neurons, whose precision is their own."""
+
+
+class Evidence(NamedTuple):
+    """What complete segments are judged by.
+
+    Attributes:
+        pooled: (inputs,), the pyramid's vector.
+        features: (features,), of the convolutions.
+    """
+
+    pooled: NDArray[np.float32]
+    features: NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,6 +61,8 @@ class PyramidModel(Model):
     Attributes:
         first: the maps of posture, velocity and the acting arm.
         stages: the discriminants on the maps' pooled activities.
+        opinion: the second opinion on complete segments.
+        verifier: tells true instances of an action from other movement.
         action_map: the second layer, a map of the discriminants' scores.
         layer3: one neuron per action on the second layer's activity.
         heads: of the search for actions without marks; None where the model was not trained for that.
@@ -50,6 +70,8 @@ class PyramidModel(Model):
 
     first: FirstMaps
     stages: StageDiscriminants
+    opinion: SecondOpinion
+    verifier: Verifier
     action_map: ActionMap
     layer3: SupervisedLayer
     metadata: PyramidMetadata
@@ -66,6 +88,13 @@ class PyramidModel(Model):
             **{name: self.first.maps[name].planes for name in MAP_INPUTS},
             "axes": self.stages.axes,
             "offsets": self.stages.offsets,
+            "convolved": self.opinion.convolutions.coordinates,
+            "convolution_biases": self.opinion.convolutions.biases,
+            "opinion_axes": self.opinion.axes,
+            "opinion_offsets": self.opinion.offsets,
+            "verifier_axes": self.verifier.pooled_axes,
+            "verifier_convolution_axes": self.verifier.convolution_axes,
+            "verifier_offsets": self.verifier.offsets,
             "concepts": self.action_map.som.planes,
             "concept_mean": self.action_map.mean,
             "layer3": self.layer3.weights,
@@ -88,9 +117,14 @@ class PyramidModel(Model):
         heads = None
         if stored.spotting is not None:
             heads = CompletenessHeads(arrays["completeness_axes"], arrays["completeness_offsets"])
+        convolutions = Convolutions(arrays["convolved"], arrays["convolution_biases"])
+        verifying = arrays["verifier_axes"], arrays["verifier_convolution_axes"], arrays["verifier_offsets"]
+        least = stored.least_likeness, stored.least_found_likeness
         return cls(
             FirstMaps(maps, stored.contrasts, (stored.arm_shares[0], stored.arm_shares[1])),
             StageDiscriminants(arrays["axes"], arrays["offsets"], tuple(stored.fractions), *durations),
+            SecondOpinion(convolutions, arrays["opinion_axes"], arrays["opinion_offsets"], stored.opinion_weight),
+            Verifier(*verifying, stored.usual_log_errors, stored.verification[0], stored.verification[1], *least),
             ActionMap(action_som, stored.concept_contrast, arrays["concept_mean"]),
             SupervisedLayer(arrays["layer3"]),
             stored,
@@ -116,18 +150,20 @@ class PyramidModel(Model):
             raise ValueError("the segment contains no frame, so no action can be recognised")
         activities: list[FrameActivity] = [frame.activity for frame in frames]
         stages = self.stages.weights((frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS, complete)
-        scores = self.scores(activities, stages)
+        evidence = self.evidence(frames) if complete else None
+        scores = self.complete_scores(evidence) if evidence else self.scores(activities, stages)
         cosines = self.layer3.cosines(self.action_map.activity(scores))
         winner = int(cosines.argmax())
         inverse_temperature = sum(map(mul, stages, self.metadata.gains)) * known_joint_share(activities)
-        familiarity = self.familiarity(activities, scores)
+        likeness = None if evidence is None else self.likeness(winner, evidence, activities)
         recognition = Recognition(
             label=self.labels[winner],
             confidence=float(1.0 / np.exp(inverse_temperature * (cosines - cosines[winner])).sum()),
             activations=dict(zip(self.labels, cosines.tolist(), strict=True)),
             part=most_moved_part(activities),
-            familiarity=familiarity,
-            unknown=complete and familiarity < self.metadata.familiar,
+            familiarity=None if likeness is None else self.verifier.probability(likeness),
+            unknown=likeness is not None and likeness < self.verifier.least_likeness,
+            doubtful=likeness is not None and likeness < self.verifier.least_found_likeness,
         )
         return self._doubted_if_still(recognition, frames) if complete else recognition
 
@@ -171,7 +207,7 @@ class PyramidModel(Model):
         A map of the first layer has its mean activity over the frames, relative to that of its most active unit.
         """
         activities: list[FrameActivity] = [frame.activity for frame in frames]
-        scores = self.scores(activities, self.stages.weights(0.0, complete=True))
+        scores = self.complete_scores(self.evidence(frames))
         segment = self.prefix_sums(activities)
         sums = segment.since_start([len(segment)]).reshape(len(CHANNELS), -1)
         first = {}
@@ -182,14 +218,31 @@ class PyramidModel(Model):
         active = soft_activity(action_som.excess2(scores), self.action_map.contrast)
         return first | {"actions": active.reshape(action_som.rows, action_som.cols)}
 
-    def familiarity(self, activities: Sequence[FrameActivity], scores: NDArray[np.float32]) -> float:
-        """Return how similar a segment with these scores (actions,) is to an action that was trained."""
+    def likeness(self, action: int, evidence: Evidence, activities: Sequence[FrameActivity]) -> float:
+        """Return how like an action (its index) a complete segment is."""
         log_error = mean_log_error(activities, self.reads_in_mirror(activities))
-        return familiarity_of(scores, log_error, self.metadata.usual_log_errors)
+        return self.verifier.likeness(action, evidence.pooled, evidence.features, log_error)
+
+    def action_unit(self, frames: Sequence[Frame]) -> int:
+        """Return the action map's winner for a complete segment."""
+        return self.action_map.som.bmu(self.complete_scores(self.evidence(frames)))
+
+    def complete_scores(self, evidence: Evidence) -> NDArray[np.float32]:
+        """Return the actions' scores for a complete segment, shape (actions,)."""
+        whole = self.stages.weights(0.0, complete=True)
+        return self.opinion.blended(self.stages.scores(evidence.pooled, whole), evidence.features)
 
     def scores(self, activities: Sequence[FrameActivity], stages: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores on the discriminants, weighted by stage, shape (actions,)."""
         return self.stages.scores(self.pyramid.vector(self.prefix_sums(activities)), stages)
+
+    def evidence(self, frames: Sequence[Frame]) -> Evidence:
+        """Return what a complete segment is judged by, of the actor as seen or mirrored."""
+        activities: list[FrameActivity] = [frame.activity for frame in frames]
+        postures = np.array([frame.kinematics.posture for frame in frames if frame.kinematics is not None])
+        as_read = mirrored(postures) if self.reads_in_mirror(activities) else postures
+        features = self.opinion.convolutions.features(resampled(as_read))
+        return Evidence(self.pyramid.vector(self.prefix_sums(activities)), features)
 
     def _doubted_if_still(self, recognition: Recognition, frames: Sequence[Frame]) -> Recognition:
         """Return the answer as it is or, where a segment moves less than any action, as unknown and as much less sure.
@@ -201,22 +254,23 @@ class PyramidModel(Model):
         if moved_m >= self.metadata.least_movement_m:
             return recognition
         share = moved_m / self.metadata.least_movement_m
-        familiarity = min(recognition.familiarity or 0.0, self.metadata.familiar) - (1 - share)
-        return replace(recognition, confidence=share * recognition.confidence, familiarity=familiarity, unknown=True)
+        familiarity = share * (recognition.familiarity or 0.0)
+        return replace(
+            recognition, confidence=share * recognition.confidence, familiarity=familiarity, unknown=True, doubtful=True
+        )
 
     def _number_problem(self) -> str | None:
         """Return the first array whose numbers are not of the kind they have to be, None where there is none."""
         if len({som.dtype for som in self.first.maps.values()}) > 1:
             return "its maps are not of the same precision"
-        outside_maps = [self.stages.axes, self.stages.offsets, self.action_map.mean]
-        outside_maps += [] if self.heads is None else [self.heads.axes, self.heads.offsets]
+        outside_maps = [array for name, array in self.arrays.items() if name not in MAP_INPUTS and name not in UPPER]
         if not all(array.dtype == np.float32 and np.isfinite(array).all() for array in outside_maps):
             return "its axes, their offsets or its mean are not finite single-precision numbers"
         return None
 
     def _shape_problem(self) -> str | None:
         """Return the first inconsistency of a shape with the metadata or other arrays, None where there is none."""
-        first, units = self.first, len(self.action_map.som.weights)
+        first, units, biases = self.first, len(self.action_map.som.weights), self.opinion.convolutions.biases
         actions, stages = len(self.metadata.labels), len(self.metadata.fractions)
         shapes = {
             "maps of the first layer": (
@@ -226,6 +280,13 @@ class PyramidModel(Model):
             **{f"map of {name}": (first.maps[name].weights.shape[1:], (INPUT_SIZES[name],)) for name in MAP_INPUTS},
             "discriminant axes": (self.stages.axes.shape, (stages, self.pyramid.cells * first.units, actions)),
             "offsets of them": (self.stages.offsets.shape, (stages, actions)),
+            "convolved coordinates": (self.opinion.convolutions.coordinates.shape, (FILTERS, COORDINATES)),
+            "biases of convolutions": (biases.shape[:1], (FILTERS,)),
+            "axes of the second opinion": (self.opinion.axes.shape, (biases.size, actions)),
+            "offsets of the second opinion": (self.opinion.offsets.shape, (actions,)),
+            "axes of the verifier": (self.verifier.pooled_axes.shape, (self.pyramid.cells * first.units, actions)),
+            "convolution axes of the verifier": (self.verifier.convolution_axes.shape, (biases.size, actions)),
+            "offsets of the verifier": (self.verifier.offsets.shape, (actions,)),
             "map of actions": (self.action_map.som.weights.shape[1:], (actions,)),
             "its mean": (self.action_map.mean.shape, (units,)),
             "third layer": (self.layer3.weights.shape, (actions, units)),

@@ -7,15 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Floats
 from actum.som.blas import row_matmul
 
 NEGLIGIBLE = 0.02
 """Stages that are less probable than this are left out: each costs a matrix product per frame."""
 SHORTEST_S = 1e-3
 """Shorter segments count as this long (s): the logarithm of 0 is infinite."""
-LOG_ERROR_COST = 0.2
-"""By how much familiarity falls where the posture map's squared quantization error is e times the usual one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,17 +63,3 @@ class StageDiscriminants:
             if weight:
                 total += np.float32(weight) * (row_matmul(vector, axes) + offsets)
         return total
-
-
-def familiarity_of(scores: Floats, log_error: float, usual_log_errors: Sequence[float]) -> float:
-    """Return the familiarity of a segment: its largest score, less a penalty for postures far from the posture map.
-
-    score − `LOG_ERROR_COST` · max(log_error − usual log_error of the action of that score, 0)
-
-    Args:
-        scores: (actions,).
-        log_error: the mean logarithm of the posture map's squared quantization error (m²).
-        usual_log_errors: (actions,), the same mean to expect of a person not trained on, for each action.
-    """
-    likeliest = int(scores.argmax())
-    return float(scores[likeliest]) - LOG_ERROR_COST * max(log_error - usual_log_errors[likeliest], 0.0)

@@ -37,6 +37,7 @@ from people import FRAME_NS
 from performers import mark, performance
 from recognisers import tiny_model
 from som_classifier.attention import PostureInput
+from som_classifier.model_loading import load_model
 from som_classifier.presets import PAPER, PaperPreset
 
 
@@ -173,6 +174,20 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     command = ["evaluate", tmp_path / "m.npz", tmp_path / "a.mcap", "--json", report]
     assert "accuracy" in invoke(*command).output
     assert '"predictions"' in report.read_text()
+
+
+def test_training_holds_the_examples_against_the_background_that_is_named(examples: Path, tmp_path: Path) -> None:
+    def trained(*background: object) -> str:
+        flags = [flag for each in background for flag in ("--background", each)]
+        done = invoke("train", examples, "-o", tmp_path / "m.npz", *flags)
+        assert done.exit_code == 0, done.output
+        return load_model(tmp_path / "m.npz").id
+
+    default, none, own = trained(), trained("none"), trained(examples)
+    assert default == trained("shipped") == trained("shipped")
+    assert len({default, none, own, trained("shipped", examples)}) == 4
+    nothing = tmp_path / "no.mcap"
+    assert str(nothing) in refused("train", examples, "-o", tmp_path / "m.npz", "--background", nothing)
 
 
 def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:

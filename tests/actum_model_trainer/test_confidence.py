@@ -4,14 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from actum.som import Som
 from actum_model_trainer.confidence import (
     cross_validated_inverse_temperature,
     expected_log_errors,
-    familiarity_threshold,
     inverse_temperatures,
     least_movement_m,
 )
@@ -33,7 +30,7 @@ PRIOR = replace(TINY.prior, gain=1.0, gain_where_inferred=0.8)
 def scored(noise: float) -> FittedStage:
     """Scores of about 1 for the action done and 0 for the others."""
     rows = np.eye(ACTIONS)[TARGETS] + np.random.default_rng(1).normal(0, noise, (len(TARGETS), ACTIONS))
-    return FittedStage(Discriminants(NOBODY, NOBODY, rows, rows), np.arange(len(TARGETS)), TARGETS)
+    return FittedStage(Discriminants(NOBODY, NOBODY, rows, rows, rows, NOBODY), np.arange(len(TARGETS)), TARGETS)
 
 
 UPPER: UpperLayers = train_upper(scored(0.1), ACTIONS, TINY, np.random.default_rng(0), silent)
@@ -84,28 +81,6 @@ def samples_of(people: int, times: int) -> list[SegmentSample]:
         for label in ("lift", "push")
         for _ in range(times)
     ]
-
-
-@given(st.integers(1, 40))
-def test_the_threshold_lies_between_the_prior_and_what_most_cross_validated_scores_exceed(people: int) -> None:
-    scores = scored(0.1).discriminants.cross_validated_scores
-    exceeded = float(np.quantile(scores.max(axis=1), 0.05))
-    found = familiarity_threshold(scores, samples_of(people, 2), TINY)
-    assert PRIOR.familiar <= found <= exceeded
-    assert people > 1 or found == PRIOR.familiar
-
-
-def test_where_each_action_was_shown_once_lower_scores_are_expected() -> None:
-    scores = scored(0.1).discriminants.cross_validated_scores
-    assert familiarity_threshold(scores, samples_of(1, 1), TINY) == PRIOR.familiar_from_one < PRIOR.familiar
-    assert familiarity_threshold(scores, samples_of(3, 1), TINY) < familiarity_threshold(scores, samples_of(3, 2), TINY)
-
-
-def test_without_a_prior_it_is_what_the_known_share_exceeds() -> None:
-    scores = scored(0.1).discriminants.cross_validated_scores
-    preset = replace(TINY, prior=replace(PRIOR, people=0.0), known_share=0.9)
-    found = familiarity_threshold(scores, samples_of(2, 2), preset)
-    assert (scores.max(axis=1) > found).mean() == pytest.approx(0.9, abs=0.02)
 
 
 def still_maps() -> FirstMaps:

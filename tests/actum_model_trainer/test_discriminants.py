@@ -129,3 +129,38 @@ def test_folds_are_of_people_or_within_an_action(people: Sequence[str], labels: 
     ]
     assert folds_of(samples).tolist() == folds
     assert FOLDS_WITHIN_AN_ACTION == 5
+
+
+def test_untaught_scores_are_those_of_axes_fitted_without_the_action() -> None:
+    """About the mean of all vectors, background included."""
+    vectors, indicators = training()
+    background = np.random.default_rng(3).normal(size=(7, vectors.shape[1])).astype(np.float32)
+    every = np.concatenate([vectors, background])
+    centred = every.astype(np.float64) - every.mean(axis=0, dtype=np.float64)
+    penalty = SHRINKAGE * np.square(centred).sum(axis=1).mean()
+    padded = np.concatenate([indicators, np.zeros((7, ACTIONS))])
+    found = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE, background)
+    for action in range(ACTIONS):
+        kept = padded[:, action] == 0
+        axes, intercept = ridge(centred[kept], padded[kept], penalty)
+        rows = np.flatnonzero(indicators[:, action])
+        np.testing.assert_allclose(found.untaught_scores[rows], centred[rows] @ axes + intercept, atol=1e-4)
+        assert np.abs(found.untaught_scores[rows, action]).max() < 1e-6
+
+
+def test_background_scores_are_those_of_axes_fitted_without_the_vector() -> None:
+    vectors, indicators = training()
+    background = np.random.default_rng(3).normal(size=(7, vectors.shape[1])).astype(np.float32)
+    every = np.concatenate([vectors, background])
+    centred = every.astype(np.float64) - every.mean(axis=0, dtype=np.float64)
+    penalty = SHRINKAGE * np.square(centred).sum(axis=1).mean()
+    padded = np.concatenate([indicators, np.zeros((7, ACTIONS))])
+    found = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE, background)
+    assert len(found.training_scores) == len(vectors) and len(found.background_scores) == 7
+    for number in range(7):
+        row = len(vectors) + number
+        kept = np.delete(np.arange(len(every)), row)
+        system = centred[kept].T @ centred[kept] + penalty * np.eye(centred.shape[1])
+        intercept = padded.mean(axis=0)
+        axes = np.linalg.solve(system, centred[kept].T @ (padded[kept] - intercept))
+        np.testing.assert_allclose(found.background_scores[number], centred[row] @ axes + intercept, atol=1e-4)

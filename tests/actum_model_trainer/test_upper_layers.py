@@ -1,5 +1,7 @@
 """The action map and the neurons learn scores, training and cross-validated ones."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -23,8 +25,8 @@ def scores(noise: float, seed: int = 0) -> np.ndarray:
 
 
 def scored(own_noise: float, cross_validated_noise: float) -> FittedStage:
-    axes = Discriminants(NOBODY, NOBODY, scores(own_noise), scores(cross_validated_noise, 1))
-    return FittedStage(axes, np.arange(len(TARGETS)), TARGETS)
+    own, held_out = scores(own_noise), scores(cross_validated_noise, 1)
+    return FittedStage(Discriminants(NOBODY, NOBODY, own, held_out, own, NOBODY), np.arange(len(TARGETS)), TARGETS)
 
 
 def upper(stage: FittedStage) -> UpperLayers:
@@ -45,7 +47,8 @@ def test_cosines_are_those_of_each_row_alone() -> None:
 def test_the_map_learns_training_and_cross_validated_scores_alike() -> None:
     """Half and half: the mean of the map's inputs is what its linear beginning stands about."""
     one, other = scored(0.1, 0.3), scored(0.3, 0.1)
-    swapped = Discriminants(NOBODY, NOBODY, one.discriminants.cross_validated_scores, one.discriminants.training_scores)
+    own, held_out = one.discriminants.training_scores, one.discriminants.cross_validated_scores
+    swapped = replace(one.discriminants, training_scores=held_out, cross_validated_scores=own)
     mirrored = FittedStage(swapped, one.sample_indices, one.targets)
     assert TINY.held_out_share == 0.5
     np.testing.assert_array_equal(upper(one).action_map.som.weights, upper(mirrored).action_map.som.weights)
@@ -57,7 +60,11 @@ def test_one_example_of_each_action_is_enough() -> None:
     targets = np.arange(10)
     perfect = 0.98 * np.eye(10)
     layers = train_upper(
-        FittedStage(Discriminants(NOBODY, NOBODY, perfect, perfect), targets, targets), 10, TINY, rng(), silent
+        FittedStage(Discriminants(NOBODY, NOBODY, perfect, perfect, perfect, NOBODY), targets, targets),
+        10,
+        TINY,
+        rng(),
+        silent,
     )
     asked = rng().integers(10, size=200)
     strangers = 0.35 * np.eye(10)[asked] + rng(1).normal(0.06, 0.04, (200, 10))

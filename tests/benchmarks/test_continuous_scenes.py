@@ -170,9 +170,9 @@ def test_the_object_of_an_action_that_was_found_is_held_against_the_truth() -> N
 
 
 def calling_nothing_unknown(model: Model) -> Model:
-    """Return the model with an open-set threshold below any score: the bodies of the scene are not those it knows."""
+    """Return the model with a verifier that takes all for true: the bodies of the scene are not those it knows."""
     assert isinstance(model, PyramidModel)
-    return replace(model, metadata=model.metadata.model_copy(update={"familiar": -100.0}))
+    return replace(model, verifier=replace(model.verifier, least_likeness=-1e9, least_found_likeness=-1e9))
 
 
 def test_the_services_name_the_object_of_an_action_that_nobody_marked() -> None:

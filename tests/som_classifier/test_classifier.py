@@ -144,7 +144,7 @@ def test_an_end_before_the_usual_time_ends_the_action_all_the_same() -> None:
 def test_what_is_unfamiliar_is_told_at_the_end() -> None:
     model = tiny_model()
     assert isinstance(model, PyramidModel)
-    strict = replace(model, metadata=model.metadata.model_copy(update={"familiar": 1e9}))
+    strict = replace(model, verifier=replace(model.verifier, least_likeness=1e9))
     actions = live(SomClassifier(strict), scene())
     assert [action.unknown for action in actions] == [action.final for action in actions]
     assert all((action.familiarity is None) != action.final for action in actions)

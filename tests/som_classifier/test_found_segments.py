@@ -127,10 +127,11 @@ def test_a_segment_that_cannot_be_answered_is_counted_and_not_put() -> None:
     assert (node.counters.counts, node.counters.rejects) == ({"found": 1, "unanswerable": 1}, {})
 
 
-def test_what_the_recogniser_calls_unknown_is_counted_and_not_put(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("called", ["unknown", "doubtful"])
+def test_what_the_recogniser_calls_unknown_is_counted_and_not_put(called: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The search may take for an action what no background sample has shown."""
     recognise = PyramidModel.recognise
-    monkeypatch.setattr(PyramidModel, "recognise", lambda *asked: replace(recognise(*asked), unknown=True))
+    monkeypatch.setattr(PyramidModel, "recognise", lambda *asked: replace(recognise(*asked), **{called: True}))
     node = SomClassifier(finding(tiny_model(), LIFT))
     assert not found(put_by(node, stream()))
     assert node.counters.counts == {"found": 1, "unknown": 1} and not node.counters.rejects
@@ -373,8 +374,8 @@ def _unnumbered(message: Message) -> Message:
 
 
 CHANGES: tuple[dict[str, object], ...] = (
-    {"publish_maps": True}, {"cooldown_s": {"lift": 3.0}}, {"disabled_actions": ["lift"]},
-    {"enabled_actions": ["push"]}, {"false_alarms_per_min": 2.5}, {"shortest_pause_s": 0.1}, {"segments": "auto"},
+    {"publish_maps": True}, {"cooldown_s": {"push": 3.0}}, {"disabled_actions": ["push"]},
+    {"enabled_actions": ["lift"]}, {"false_alarms_per_min": 2.5}, {"shortest_pause_s": 0.1}, {"segments": "auto"},
     {"segments": "auto", "false_alarms_per_min": 0.1, "publish_maps": True},
 )  # fmt: skip
 
@@ -408,7 +409,7 @@ def test_an_action_in_whose_middle_a_setting_is_changed_is_found_as_if_nothing_h
 
 
 def test_what_is_switched_off_and_on_again_in_the_middle_of_an_action_is_found() -> None:
-    off, on = {"disabled_actions": ["push"]}, {"disabled_actions": []}
+    off, on = {"disabled_actions": ["lift"]}, {"disabled_actions": []}
     assert found_with_changes({15: [off], 20: [on]}) == found_with_changes({})
 
 

@@ -14,6 +14,7 @@ from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.samples import SegmentSample
 from recognisers import in_a_mirror, tiny_model, tiny_samples
 from som_classifier.attention import PART_NAMES, attended_part
+from som_classifier.convolutions import resampled
 from som_classifier.frame_activity import FrameActivity, known_joint_share
 from som_classifier.frames import Frame
 from som_classifier.handedness import mirrored
@@ -21,7 +22,6 @@ from som_classifier.kinematics import movement_m
 from som_classifier.model import Recognition
 from som_classifier.pyramid import SCALE, Pyramid
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.stage_discriminants import familiarity_of
 
 SAMPLES = tiny_samples()
 each_sample = pytest.mark.parametrize("sample", SAMPLES[:3], ids=lambda sample: sample.label)
@@ -68,15 +68,27 @@ def read_by(model: PyramidModel, sample: SegmentSample) -> np.ndarray:
 def test_an_answer_is_cosines_and_the_share_of_their_softmax(sample: SegmentSample) -> None:
     frames = encoded(model(), sample)
     found = model().recognise(frames, complete=True)
-    scores = model().scores([frame.activity for frame in frames], [0.0, 0.0, 1.0])
+    evidence = model().evidence(frames)
+    scores = model().complete_scores(evidence)
     cosines = model().layer3.cosines(model().action_map.activity(scores))
     shares = np.exp(model().metadata.gains[-1] * cosines)
     assert found.activations == dict(zip(model().labels, cosines.tolist(), strict=True))
     assert found.confidence == pytest.approx(shares.max() / shares.sum())
-    usual = model().metadata.usual_log_errors
-    log_errors = model().first.log_errors(read_by(model(), sample), model().winners(frames))
-    assert found.familiarity == pytest.approx(familiarity_of(scores, log_errors.mean(), usual), abs=1e-5)
-    assert found.label == model().labels[int(np.argmax(cosines))]
+    winner = int(np.argmax(cosines))
+    log_error = float(model().first.log_errors(read_by(model(), sample), model().winners(frames)).mean())
+    verifier = model().verifier
+    likeness = verifier.likeness(winner, evidence.pooled, evidence.features, log_error)
+    assert found.familiarity == pytest.approx(verifier.probability(likeness), abs=1e-5)
+    assert found.label == model().labels[winner]
+
+
+@each_sample
+def test_a_complete_segment_is_scored_by_maps_and_convolutions(sample: SegmentSample) -> None:
+    frames, opinion = encoded(model(), sample), model().opinion
+    of_maps = model().scores([frame.activity for frame in frames], [0.0, 0.0, 1.0])
+    own = opinion.convolutions.features(resampled(read_by(model(), sample))) @ opinion.axes + opinion.offsets
+    expected = (of_maps + opinion.weight * own) / (1 + opinion.weight)
+    np.testing.assert_allclose(model().complete_scores(model().evidence(frames)), expected, atol=1e-5)
 
 
 @settings(deadline=None)
@@ -166,9 +178,11 @@ def test_estimates_go_by_the_time_since_the_start_and_final_answers_do_not() -> 
 
 
 def test_an_estimate_after_the_usual_time_and_more_is_the_final_answer() -> None:
-    frames = encoded(model(), SAMPLES[1])
+    """But for what only complete segments have: the second opinion and the familiarity."""
+    alone = replace(model(), opinion=replace(model().opinion, weight=0.0))
+    frames = encoded(alone, SAMPLES[1])
     late = [*frames[:-1], replace(frames[-1], stamp_ns=frames[0].stamp_ns + 60 * SECOND_NS)]
-    assert model().recognise(late, False) == model().recognise(late, True)
+    assert alone.recognise(late, False) == replace(alone.recognise(late, True), familiarity=None)
 
 
 def test_no_frame_is_an_error() -> None:
@@ -176,13 +190,13 @@ def test_no_frame_is_an_error() -> None:
         model().recognise([], True)
 
 
-@pytest.mark.parametrize(("familiar", "unknown"), [(-1e9, False), (1e9, True)])
-def test_only_a_whole_segment_is_unknown(familiar: float, unknown: bool) -> None:
-    about = model().metadata.model_copy(update={"familiar": familiar})
-    strict = replace(model(), metadata=about)
+@pytest.mark.parametrize(("least", "unknown"), [(-1e9, False), (1e9, True)])
+def test_only_a_whole_segment_is_unknown(least: float, unknown: bool) -> None:
+    strict = replace(model(), verifier=replace(model().verifier, least_likeness=least))
     frames = encoded(strict, SAMPLES[0])
     assert strict.recognise(frames, True).unknown is unknown
-    assert not strict.recognise(frames, False).unknown
+    begun = strict.recognise(frames, False)
+    assert (begun.unknown, begun.familiarity) == (False, None)
 
 
 def with_least_movement(least_m: float) -> PyramidModel:
@@ -194,7 +208,7 @@ def test_who_moves_half_as_far_as_the_least_is_unknown_and_half_as_sure(sample: 
     usual = answer(model(), encoded(model(), sample))
     moved_m = movement_m(sample.stamps_ns, sample.postures)
     found = answer(strict := with_least_movement(2 * moved_m), encoded(strict, sample))
-    assert found.unknown and (found.familiarity or 0) <= strict.metadata.familiar - 0.5
+    assert found.unknown and found.familiarity == pytest.approx((usual.familiarity or 0) / 2)
     assert found.confidence == pytest.approx(usual.confidence / 2)
     assert (found.label, found.activations, found.part) == (usual.label, usual.activations, usual.part)
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from som_classifier.stage_discriminants import NEGLIGIBLE, StageDiscriminants, familiarity_of
+from som_classifier.stage_discriminants import NEGLIGIBLE, StageDiscriminants
 
 FRACTIONS = (0.3, 0.55, 0.75, 1.0)
 MEAN_S, SD = 1.4, 0.3
@@ -91,12 +91,3 @@ def test_a_stage_without_weight_leaves_no_trace() -> None:
     odd = StageDiscriminants(axes, offsets, FRACTIONS, one.log_duration_mean, one.log_duration_sd)
     weights = one.weights(1.0, True)
     np.testing.assert_array_equal(odd.scores(vector(), weights), one.scores(vector(), weights))
-
-
-def test_familiarity_by_hand() -> None:
-    """The largest score, less 0.2 for each e-fold by which the postures are further off the map than usual for it."""
-    scores = np.array([0.1, 0.7, -0.2], np.float32)
-    usual = [-4.0, -2.5, 0.0]
-    assert [familiarity_of(scores, error, usual) for error in (-9.0, -3.0, -2.5)] == pytest.approx([0.7] * 3)
-    assert familiarity_of(scores, -1.5, usual) == pytest.approx(0.5)
-    assert familiarity_of(scores, 2.5, usual) == pytest.approx(-0.3)

@@ -19,6 +19,7 @@ from actum_command.commands.terminal import console, fail, failing_on, refuse_un
 from actum_command.commands.tune_command import SEARCH_SETTINGS, flags_for
 from actum_command.service_settings import Given, arguments_of, flag_of
 from actum_model_trainer.advice import Contents, advice
+from actum_model_trainer.background import shipped
 from actum_model_trainer.continuous.continuous_report import continuous_report
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import NoSpotterError, found_by
@@ -26,7 +27,7 @@ from actum_model_trainer.continuous_cross_validation import found_without_each, 
 from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import evaluate
 from actum_model_trainer.report import report
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.samples import LabelledStream, samples_from, select
 from actum_model_trainer.training import TrainingError, train_to_spot
 from som_classifier.attention import ATTENTIONS
 from som_classifier.model import Model
@@ -49,6 +50,11 @@ SET_HELP = (
     f"joints are used: {', '.join(ATTENTIONS)} (default: moving, which is the part that moves most)"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
+BACKGROUND_HELP = (
+    "movement that is none of the actions, so that the model learns what to ignore; may be repeated: shipped (half an "
+    "hour of simulated people, comes with actum; default), none, or recordings (.mcap) or folders of them"
+)
+SHIPPED, NONE = "shipped", "none"
 ONLY_LEFT_OUT = "used only with --leave-one-person-out: "
 PRESETS_SHOWN = f"<{'|'.join(PRESETS)}>"
 PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HELP)]
@@ -64,6 +70,9 @@ def train_command(
     person: PersonOption = None,
     seed: SeedOption = 0,
     with_excluded: AllOption = False,
+    background: Annotated[
+        list[str] | None, typer.Option(metavar=f"<{SHIPPED}|{NONE}|FILE>", help=BACKGROUND_HELP)
+    ] = None,
 ) -> None:
     """Train a model on labelled recordings, and write it to a file for 'actum up --model'."""
     began_s = time.monotonic()
@@ -77,7 +86,8 @@ def train_command(
             say(f"{unusable.segment_id} of {unusable.file} was not used: {unusable.reason}")
         tell_unread(recordings)
         with bars() as progress:
-            model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress)
+            beside = _background(background or [SHIPPED])
+            model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress, beside)
         model.save(output)
     say(
         f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
@@ -86,6 +96,12 @@ def train_command(
     contents = Contents.of(samples.usable, model.background_s or 0.0)
     for sentence in advice(contents, model.metadata.held_out_answers):
         say(sentence, style="yellow")
+
+
+def _background(names: Sequence[str]) -> list[LabelledStream]:
+    """Return the streams of `--background`: those that come with actum, and those of recordings."""
+    files = select([Path(name) for name in names if name not in (SHIPPED, NONE)])
+    return [*(shipped() if SHIPPED in names else ()), *samples_from(files).streams]
 
 
 @with_flags_of(CLASSIFIER, names=SEARCH_SETTINGS)

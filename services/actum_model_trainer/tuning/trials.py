@@ -109,7 +109,7 @@ class _Searches:
             if closed.reason is None and len(usable) >= self._model.min_frames:
                 answer = self._model.recognise(usable, complete=True)
                 bounds = closed.start_ns, closed.end_ns, posture.stamp_ns
-                if not answer.unknown:
+                if not (answer.unknown or answer.doubtful):
                     into.append(Detection(self._file, posture.agent, *bounds, answer.label, answer.confidence))
         self._found.clear()
 

@@ -116,9 +116,10 @@ class Action(Message):
     hand: Hand | None = None
     """The hand that was marked; null where none was."""
     unknown: bool = False
-    """Whether it may be none of the trained actions: `familiarity` is too low."""
+    """Whether it may be none of the trained actions: it is less like its action than most true instances are."""
     familiarity: FiniteFloat | None = None
-    """How much it resembles what was trained, on the model's own scale; null where the model cannot tell."""
+    """Probability that the segment is a true instance of `action`, not another movement; null in partial actions and
+    where the model cannot tell."""
     missing_joints: list[Name] = Field([])
     """The names of the joints that some frame lacked for longer than 0.3 s."""
     completeness: FiniteFloat | None = None

@@ -52,7 +52,7 @@ function facts(segment) {
   return [
     ["Segment", `${seconds((end - start) / 1e9)}, ${marked ? `marked (${origin ?? "a program"})` : "found by the classifier"}`],
     ["Confidence", `${percent(answer.confidence)}${margin(answer.activations)}`],
-    ["Familiarity", action?.familiarity === null || !action ? null : `${action.familiarity.toFixed(2)}${action.unknown ? ", too low, so the action is unknown" : ""}`],
+    ["Familiarity", action?.familiarity === null || !action ? null : `${percent(action.familiarity)}${action.unknown ? ", too low, so the action is unknown" : ""}`],
     ["Early answers", earlier(early, answer.action, start, end)],
     ["Hand", event?.hand ?? action?.part?.replace("_", " ")],
     ["Object", ofObject(event)],

@@ -1,0 +1,71 @@
+"""The convolutions of the second opinion and the verifier: their coordinates, biases and features."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from actum.arrays import Array
+from actum_model_trainer.discriminants import Discriminants
+from som_classifier.convolutions import COORDINATES, FILTERS, WEIGHTS, Convolutions, Floats32, resampled
+
+GOLDEN = (np.sqrt(5) - 1) / 2
+"""Multiples of it modulo 1 are spread evenly over quantiles, however many there are."""
+
+
+def drawn_convolutions(series: Sequence[Floats32], biases: int, rng: np.random.Generator) -> Convolutions:
+    """Draw each filter's coordinates, and its biases as quantiles of its response to a sequence drawn from `series`.
+
+    A filter looks at up to nine coordinates, as often at one or two as at four to nine.
+    """
+    coordinates = np.zeros((FILTERS, COORDINATES), np.float32)
+    for of_filter in coordinates:
+        count = int(2 ** rng.uniform(0, np.log2(WEIGHTS + 1)))
+        of_filter[rng.choice(COORDINATES, count, replace=False)] = 1
+    unbiased = Convolutions(coordinates, np.zeros((FILTERS, 0), np.float32))
+    shown = rng.integers(len(series), size=FILTERS)
+    responses = {number: unbiased.responses(series[number]) for number in np.unique(shown).tolist()}
+    quantiles = (GOLDEN * np.arange(1, FILTERS * biases + 1) % 1).reshape(FILTERS, biases)
+    drawn = [np.quantile(responses[number][row], quantiles[row]) for row, number in enumerate(shown.tolist())]
+    return Convolutions(coordinates, np.array(drawn, np.float32).reshape(FILTERS, biases))
+
+
+def blended(one: Discriminants, other: Discriminants, weight: float) -> Discriminants:
+    """Return the first discriminants with weighted means of both ones' scores; the first have weight 1."""
+    names = ("training_scores", "cross_validated_scores", "untaught_scores", "background_scores")
+    means = {name: (getattr(one, name) + weight * getattr(other, name)) / (1 + weight) for name in names}
+    return replace(one, **means)
+
+
+@dataclass(frozen=True, eq=False)
+class Convolved:
+    """The features of training sequences and of background, each divided by its standard deviation in training.
+
+    Attributes:
+        convolutions: that give them.
+        spread: (features,), the standard deviations.
+        taught: (n, features).
+        background: (m, features).
+    """
+
+    convolutions: Convolutions
+    spread: Floats32
+    taught: Floats32
+    background: Floats32
+
+    @classmethod
+    def of(
+        cls, taught: Sequence[Array], background: Sequence[Array], biases: int, rng: np.random.Generator
+    ) -> "Convolved":
+        """Draw convolutions for sequences (frames, 15, 3), as the classifier reads them, and apply them."""
+        series = [resampled(postures) for postures in taught]
+        convolutions = drawn_convolutions(series, biases, rng)
+        features = np.stack([convolutions.features(each) for each in series])
+        spread = features.std(axis=0)
+        spread[spread == 0] = 1.0
+        beside = np.array([convolutions.features(resampled(each)) for each in background], np.float32)
+        return cls(convolutions, spread, features / spread, beside.reshape(-1, len(spread)) / spread)
+
+    def axes(self, fitted: Discriminants) -> Floats32:
+        """Return the axes for features as they are of discriminants that were fitted to these."""
+        return (fitted.axes / self.spread[:, None]).astype(np.float32)
