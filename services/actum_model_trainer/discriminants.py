@@ -159,10 +159,10 @@ def _untaught(inverse: Floats, indicators: Array, count: int) -> Array:
 
 
 def _each_left_out(inverse: Floats, indicators: Array, count: int) -> Array:
-    """Return the scores of the rows from `count` on by discriminants fitted without that row, but with its mean.
+    """Return the scores of the rows from `count` on, each by discriminants that were fitted to all other rows.
 
-    By the leave-one-out formula of ridge regression: the residual grows by 1 / (1 - leverage).
+    By the leave-one-out formula of ridge regression: no discriminants need be fitted. The mean is that of all rows.
     """
-    residuals = (inverse @ (indicators - indicators.mean(axis=0)))[count:] / np.diag(inverse)[count:, None]
-    scores: Array = indicators[count:] - residuals
+    dual = inverse[count:] @ (indicators - indicators.mean(axis=0))
+    scores: Array = indicators[count:] - dual / np.diag(inverse)[count:, None]
     return scores

@@ -92,7 +92,7 @@ def _background(
 ) -> Strange:
     """Draw the background's windows, each read as the classifier reads it."""
     rng = np.random.default_rng(seed)
-    durations_s = np.array([duration_s(sample) for sample in samples])
+    durations_s = np.array([_duration_s(sample) for sample in samples])
     windows = windows_of(streams, durations_s, preset.background, rng)
     return windows, [[next(variants(window, preset, mirrors, rng))] for window in windows]
 
@@ -164,7 +164,7 @@ def _with_opinion(
 def _stage_discriminants(
     fitted: Sequence[FittedStage], samples: Sequence[SegmentSample], preset: PyramidPreset
 ) -> StageDiscriminants:
-    log_durations = np.log([duration_s(sample) for sample in samples])
+    log_durations = np.log([_duration_s(sample) for sample in samples])
     return StageDiscriminants(
         np.stack([stage.discriminants.axes for stage in fitted]),
         np.stack([stage.discriminants.offsets for stage in fitted]),
@@ -217,6 +217,6 @@ def _cross_validated_counts(stage: FittedStage, labels: Sequence[str]) -> dict[s
     return counts
 
 
-def duration_s(sample: SegmentSample) -> float:
+def _duration_s(sample: SegmentSample) -> float:
     """Return how long a sample lasts, at least one frame."""
     return max(float(np.ptp(sample.stamps_ns)) / SECOND_NS, MIN_DURATION_S)

@@ -281,7 +281,7 @@ class PyramidModel(Model):
             "discriminant axes": (self.stages.axes.shape, (stages, self.pyramid.cells * first.units, actions)),
             "offsets of them": (self.stages.offsets.shape, (stages, actions)),
             "convolved coordinates": (self.opinion.convolutions.coordinates.shape, (FILTERS, COORDINATES)),
-            "biases of convolutions": (biases.shape[:1], (FILTERS,)),
+            "biases of convolutions": (biases.shape, (FILTERS, biases.size // FILTERS)),
             "axes of the second opinion": (self.opinion.axes.shape, (biases.size, actions)),
             "offsets of the second opinion": (self.opinion.offsets.shape, (actions,)),
             "axes of the verifier": (self.verifier.pooled_axes.shape, (self.pyramid.cells * first.units, actions)),

@@ -8,7 +8,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum_model_trainer.discriminants import FOLDS_WITHIN_AN_ACTION, MAX_PERSON_FOLDS, fit_discriminants, folds_of
+from actum_model_trainer.discriminants import (
+    FOLDS_WITHIN_AN_ACTION,
+    MAX_PERSON_FOLDS,
+    Discriminants,
+    fit_discriminants,
+    folds_of,
+)
 from recognisers import tiny_samples
 
 SHRINKAGE = 0.2
@@ -131,36 +137,34 @@ def test_folds_are_of_people_or_within_an_action(people: Sequence[str], labels: 
     assert FOLDS_WITHIN_AN_ACTION == 5
 
 
-def test_untaught_scores_are_those_of_axes_fitted_without_the_action() -> None:
-    """About the mean of all vectors, background included."""
+def with_background() -> tuple[np.ndarray, np.ndarray, float, Discriminants]:
+    """Seven vectors of background beside the training: all centred, their indicators, the penalty, what is fitted."""
     vectors, indicators = training()
     background = np.random.default_rng(3).normal(size=(7, vectors.shape[1])).astype(np.float32)
     every = np.concatenate([vectors, background])
     centred = every.astype(np.float64) - every.mean(axis=0, dtype=np.float64)
     penalty = SHRINKAGE * np.square(centred).sum(axis=1).mean()
     padded = np.concatenate([indicators, np.zeros((7, ACTIONS))])
-    found = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE, background)
+    return centred, padded, penalty, fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE, background)
+
+
+def test_untaught_scores_are_those_of_axes_fitted_without_the_action() -> None:
+    """About the mean of all vectors, background included."""
+    centred, indicators, penalty, found = with_background()
     for action in range(ACTIONS):
-        kept = padded[:, action] == 0
-        axes, intercept = ridge(centred[kept], padded[kept], penalty)
-        rows = np.flatnonzero(indicators[:, action])
+        kept, rows = indicators[:, action] == 0, np.flatnonzero(indicators[:, action])
+        axes, intercept = ridge(centred[kept], indicators[kept], penalty)
         np.testing.assert_allclose(found.untaught_scores[rows], centred[rows] @ axes + intercept, atol=1e-4)
         assert np.abs(found.untaught_scores[rows, action]).max() < 1e-6
 
 
 def test_background_scores_are_those_of_axes_fitted_without_the_vector() -> None:
-    vectors, indicators = training()
-    background = np.random.default_rng(3).normal(size=(7, vectors.shape[1])).astype(np.float32)
-    every = np.concatenate([vectors, background])
-    centred = every.astype(np.float64) - every.mean(axis=0, dtype=np.float64)
-    penalty = SHRINKAGE * np.square(centred).sum(axis=1).mean()
-    padded = np.concatenate([indicators, np.zeros((7, ACTIONS))])
-    found = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE, background)
-    assert len(found.training_scores) == len(vectors) and len(found.background_scores) == 7
-    for number in range(7):
-        row = len(vectors) + number
-        kept = np.delete(np.arange(len(every)), row)
+    """About the mean of all vectors and indicators."""
+    centred, indicators, penalty, found = with_background()
+    assert len(found.training_scores) == len(centred) - 7 and len(found.background_scores) == 7
+    intercept = indicators.mean(axis=0)
+    for number, row in enumerate(range(len(centred) - 7, len(centred))):
+        kept = np.arange(len(centred)) != row
         system = centred[kept].T @ centred[kept] + penalty * np.eye(centred.shape[1])
-        intercept = padded.mean(axis=0)
-        axes = np.linalg.solve(system, centred[kept].T @ (padded[kept] - intercept))
+        axes = np.linalg.solve(system, centred[kept].T @ (indicators[kept] - intercept))
         np.testing.assert_allclose(found.background_scores[number], centred[row] @ axes + intercept, atol=1e-4)

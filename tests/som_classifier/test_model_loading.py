@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from actum import __version__
 from actum.som import Som
 from handmade import KINDS, model_of, paper_model, pyramid_model
+from som_classifier.convolutions import FILTERS
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.pyramid_model import PyramidModel
@@ -159,6 +160,21 @@ def test_headers_that_numpy_cannot_read_are_refused(tmp_path: Path, old: bytes, 
 
 
 SINGLE = np.float32
+OF_COMPLETE_SEGMENTS = (
+    "convolved",
+    "convolution_biases",
+    "opinion_axes",
+    "opinion_offsets",
+    "verifier_axes",
+    "verifier_convolution_axes",
+    "verifier_offsets",
+)
+FLAT_BIASES = {
+    "convolution_biases": np.zeros(FILTERS, SINGLE),
+    "opinion_axes": np.zeros((FILTERS, 2), SINGLE),
+    "verifier_convolution_axes": np.zeros((FILTERS, 2), SINGLE),
+}
+"""They fit together, and not to the filters."""
 MISFITS: list[tuple[str, dict[str, object]]] = [
     ("paper", {"metadata": None}),
     ("paper", {"layer3": None}),
@@ -170,6 +186,7 @@ MISFITS: list[tuple[str, dict[str, object]]] = [
     ("paper", {"layer3": np.eye(3)}),
     ("paper", {"layer3": np.zeros((2, 2))}),
     ("pyramid", {"metadata": None}),
+    ("pyramid", FLAT_BIASES),
     *(("pyramid", {name: None}) for name in pyramid_model().arrays),
     *(("pyramid", {name: np.zeros((3, 3, 44), SINGLE)}) for name in ("postures", "velocities", "arms", "concepts")),
     *(("pyramid", {name: np.zeros((9, 45), SINGLE)}) for name in ("postures", "velocities", "arms", "concepts")),
@@ -182,7 +199,7 @@ MISFITS: list[tuple[str, dict[str, object]]] = [
     ("pyramid", {"layer3": np.zeros((2, 9))}),
     *(
         ("pyramid", {name: make(pyramid_model().arrays[name])})
-        for name in ("axes", "offsets", "concept_mean")
+        for name in ("axes", "offsets", "concept_mean", *OF_COMPLETE_SEGMENTS)
         for make in (
             lambda array: array[:-1],
             lambda array: array[..., None],

@@ -16,7 +16,7 @@ LARGEST_LOGIT = 30.0
 
 
 def logistic_fit(answers: Array, is_right: NDArray[np.bool_], counts: Array | None = None) -> tuple[float, float]:
-    """Return slope and intercept of the logistic regression of outcomes (n,) on answers (n,), each of which may count.
+    """Return slope and intercept of the logistic regression of outcomes (n,) on answers (n,), weighted by counts (n,).
 
     By Newton's method, with one more sample of either outcome at the mean answer so that it stays finite.
     """
