@@ -76,6 +76,7 @@ def _run(arguments: Sequence[str], environment: Mapping[str, str], folder: str, 
     os.chdir(folder)
     os.environ.clear()
     os.environ.update(environment)
+    sys.orig_argv = [sys.executable, *arguments]
     for stream, name in zip((sys.stdout, sys.stderr), outputs, strict=True):
         _write_into(stream, name)
     match arguments:

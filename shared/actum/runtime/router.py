@@ -1,6 +1,8 @@
 """The embedded router: a Zenoh session in router mode."""
 
 import logging
+import os
+import sys
 import threading
 from pathlib import Path
 
@@ -64,26 +66,25 @@ def serve_router(
     health_file: Path | None = None,
     link: str | None = None,
 ) -> None:
-    """Run a router until stopped; with a folder of credentials it is opened anew whenever these have been renewed.
-
-    So it is when its file of configuration, which says who may do what, has been changed meanwhile.
+    """Run a router until stopped; once its credentials have been renewed, or its configuration changed, start it anew.
 
     The health file is touched every second while the router answers queries of what it is. A router reads its
-    certificate only when it begins to listen. Its clients, which then lose it for some tenths of a second, show theirs
-    anew each time they connect.
+    certificate, and who may do what, only when it begins to listen. Its clients, which then lose it for a second or
+    two, show theirs anew each time they connect.
+
+    The process is then replaced by one with the same command line, and the session is not closed before: Zenoh 1.10
+    sometimes panics, and may hang, where linked routers close their sessions at the same time.
 
     Raises:
         SettingsError: the endpoint is taken, or the configuration or the credentials are refused.
     """
-    health = HealthFile(health_file)
-    while not stop.is_set():
-        read = _contents(config_file, credentials)
-        session = _opened(listen, config_file, credentials, link)
-        log.info("router %s listens on %s", session.zid(), listen or config_file)
-        try:
-            _wait_for_change(session, credentials, config_file, read, health, stop)
-        finally:
-            session.close()
+    read = _contents(config_file, credentials)
+    session = _opened(listen, config_file, credentials, link)
+    log.info("router %s listens on %s", session.zid(), listen or config_file)
+    if _changed(session, credentials, config_file, read, HealthFile(health_file), stop):
+        log.info("the credentials in %s or the configuration has changed: the router starts anew", credentials)
+        os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+    session.close()
 
 
 def _opened(listen: str | None, config_file: Path | None, credentials: Path | None, link: str | None) -> zenoh.Session:
@@ -96,20 +97,23 @@ def _opened(listen: str | None, config_file: Path | None, credentials: Path | No
         raise SettingsError(f"the router cannot start on {listen or config_file}: {reason_of(error)}") from None
 
 
-def _wait_for_change(
+def _changed(
     session: zenoh.Session,
     credentials: Path | None,
     config_file: Path | None,
     read: list[bytes],
     health: HealthFile,
     stop: threading.Event,
-) -> None:
-    """Wait until stopped, or until the files that were read are others that can be used; keep the health file."""
+) -> bool:
+    """Wait until stopped, or until the files that were read are others that can be used: then True.
+
+    The health file is kept meanwhile.
+    """
     while _contents(config_file, credentials) == read or not _usable(config_file, credentials):
         health.write(any(session.get(f"@/{session.zid()}/router", timeout=LOOK_S)))
         if wait_for(stop, LOOK_S):
-            return
-    log.info("the credentials in %s or the configuration has changed: the router restarts its listener", credentials)
+            return False
+    return True
 
 
 def _contents(config_file: Path | None, credentials: Path | None) -> list[bytes]:
