@@ -16,6 +16,7 @@ from actum.messages import (
     Action,
     Agent,
     Event,
+    HeldBack,
     Image,
     Message,
     Objects,
@@ -120,6 +121,8 @@ def _content(message: Message) -> str:
             label = "" if message.label is None else f", label {escape(message.label)}"
             origin = "" if message.origin is None else f", by {escape(message.origin)}"
             text = f"{message.kind} {escape(message.segment_id)}{label}{origin}"
+        case HeldBack():
+            text = f"[dim]not told: {escape(message.sentence)}[/dim]"
         case Truth():
             done = f'{message.action} {message.object_id} "{message.object_name}"'
             text = f"{message.kind} {escape(message.segment_id)}: {escape(done)}"

@@ -69,7 +69,7 @@ CLASSIFIER = Role(
     "classifier",
     "the classifier, which also publishes the segments that it finds",
     services=("som_classifier",),
-    puts=(keys.SEGMENT, keys.ACTION),
+    puts=(keys.SEGMENT, keys.ACTION, keys.HELD_BACK),
     reads=(keys.POSTURE, keys.SEGMENT),
 )
 TRACKER = Role(

@@ -12,7 +12,16 @@ from actum.recorder import Recorder
 from actum_examples.unstamped_marks import Placed, UnstampedMarks
 
 STREAMS = frozenset(
-    {keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH},
+    {
+        keys.SKELETON,
+        keys.POSTURE,
+        keys.OBJECTS,
+        keys.SEGMENT,
+        keys.ACTION,
+        keys.HELD_BACK,
+        keys.EVENT,
+        keys.TRUTH,
+    },
 )
 """The topics that are stored of every sensor."""
 

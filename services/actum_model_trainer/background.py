@@ -4,6 +4,7 @@ The file that comes with actum holds simulated people's streams as whole millime
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.atomic_file import replaced
+from actum.messages import NONE
 from actum.node import SECOND_NS
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 
@@ -28,6 +30,8 @@ LEAST_SPEED_M_S = 0.25
 """Mean of the five body parts' summed speed in a window: stillness is judged otherwise."""
 DRAWS_PER_WINDOW = 20
 """Windows that are looked at for each that is wanted, where people stand or are out of sight most of the time."""
+TIMES = 10
+"""How often a counterexample counts beside a window that is drawn: it is of this very person, sensor and mistake."""
 ARRAYS = ("motion", "postures", "velocities")
 
 
@@ -55,6 +59,26 @@ def shipped() -> tuple[LabelledStream, ...]:
         LabelledStream(stamps, motion, postures, velocities, (), f"background {number}", str(SHIPPED), number)
         for number, (stamps, motion, postures, velocities) in enumerate(zip(stamps_ns, *arrays, strict=True))
     )
+
+
+def counterexamples(streams: Sequence[LabelledStream]) -> list[LabelledStream]:
+    """Cut out of streams what is labelled as none of the actions, each a stream of its own."""
+    return [_clip(stream, each) for stream in streams for each in stream.segments if each[2] == NONE]
+
+
+def _clip(stream: LabelledStream, segment: tuple[int, int, str]) -> LabelledStream:
+    part = slice(*np.searchsorted(stream.stamps_ns, (segment[0], segment[1] + 1)).tolist())
+    arrays = {name: getattr(stream, name)[part] for name in ("stamps_ns", *ARRAYS)}
+    return replace(stream, segments=(segment,), **arrays)
+
+
+def negatives_of(
+    streams: Sequence[LabelledStream], durations_s: Array, count: int, rng: np.random.Generator
+) -> list[SegmentSample]:
+    """Return the counterexamples among streams, each `TIMES` times, and windows that are drawn from all streams."""
+    clips = [each for each in counterexamples(streams) if len(each.stamps_ns) >= FEWEST_FRAMES]
+    whole = [_cut(clip, 0, len(clip.stamps_ns)) for clip in clips]
+    return [*(each for each in whole for _ in range(TIMES)), *windows_of(streams, durations_s, count, rng)]
 
 
 def windows_of(

@@ -12,7 +12,7 @@ from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
 from actum_model_trainer.augmentation import Variant, augmentation_for, variants
-from actum_model_trainer.background import windows_of
+from actum_model_trainer.background import negatives_of
 from actum_model_trainer.confidence import (
     expected_log_errors,
     inverse_temperatures,
@@ -93,7 +93,7 @@ def _background(
     """Draw the background's windows, each read as the classifier reads it."""
     rng = np.random.default_rng(seed)
     durations_s = np.array([_duration_s(sample) for sample in samples])
-    windows = windows_of(streams, durations_s, preset.background, rng)
+    windows = negatives_of(streams, durations_s, preset.background, rng)
     return windows, [[next(variants(window, preset, mirrors, rng))] for window in windows]
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from actum import keys
 from actum.arrays import Array
-from actum.messages import Hand
+from actum.messages import NONE, Hand
 from actum.node import replay
 from actum.recording import Recording
 from actum.recording_files import recording_files
@@ -72,7 +72,7 @@ class LabelledStream:
         motion: (n, 5), mean displacement of each body part since the frame before, metres.
         postures: (n, 15, 3), scaled joints in the upright frame, low-passed, NaN where missing.
         velocities: (n, 15, 3), of the postures.
-        segments: start and end (ns) and label of each labelled segment, in the order in which they end.
+        segments: start and end (ns) and label of each labelled segment, `NONE` too, in the order in which they end.
         person: whose recording it is.
         file: the recording's path.
         agent: the person's number in it.
@@ -93,7 +93,7 @@ class LabelledStream:
     def marked(self) -> Found:
         """What the person did, and when the person was seen."""
         return Found(
-            truths=[Truth(self.file, self.agent, *segment) for segment in self.segments],
+            truths=[Truth(self.file, self.agent, *segment) for segment in self.segments if segment[2] != NONE],
             seen=[Stretch(self.file, self.agent, *run_ns) for run_ns in self.runs_ns],
         )
 
@@ -129,8 +129,8 @@ class Samples:
 
     @cached_property
     def usable(self) -> list[SegmentSample]:
-        """The segments that a model can be trained on."""
-        return [segment for segment in self.segments if isinstance(segment, SegmentSample)]
+        """The segments of actions that a model can be trained on."""
+        return [each for each in self.segments if isinstance(each, SegmentSample) and each.label != NONE]
 
     @cached_property
     def unusable(self) -> list[Unusable]:

@@ -6,7 +6,7 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from actum_model_trainer import paper_training, pyramid_training
-from actum_model_trainer.background import shipped
+from actum_model_trainer.background import counterexamples, shipped
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream, SegmentSample
@@ -54,10 +54,13 @@ def train_to_spot(
 ) -> Model:
     """Train a model that also finds actions without marks, where its kind can.
 
+    What is labelled as none of the actions in the streams counts as background, too.
+
     Raises:
         TrainingError: fewer than two actions among the samples.
     """
-    model, search = train(samples, preset, seed, progress, background), SEARCHES.get(preset.kind)
+    beside = [*(shipped() if background is None else background), *counterexamples(streams)]
+    model, search = train(samples, preset, seed, progress, beside), SEARCHES.get(preset.kind)
     if search is None:
         return model
     with threadpool_limits(1, user_api="blas"):

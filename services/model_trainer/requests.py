@@ -65,6 +65,21 @@ class Record(OfSet):
     """Who is meant, by the number in `skeleton`; null for whoever repeats something, the nearest of several."""
 
 
+class Correct(OfSet):
+    """What was really done in an event."""
+
+    agent: Annotated[int, Field(ge=1, lt=2**31)]
+    """Who acted, as the `event` or `held_back` message says."""
+    start_ns: Stamp
+    """Stamp of the event's start (ns)."""
+    end_ns: Stamp
+    """Stamp of its end (ns)."""
+    label: LabelOrNone = ""
+    """The action that was done; empty where it was none of the actions."""
+    person: NameOrNone = ""
+    """Who did it, by name: a model is tested on people who were left out of its training."""
+
+
 class OfExample(OfSet):
     """Which example is meant."""
 

@@ -105,7 +105,7 @@ class TakeCommands:
     def _redo_last(self, request: OfSet) -> TakeReply:
         """Record the newest take of a set anew; the old one goes once the new one is there."""
         self._refuse_recording()
-        takes = [take for take in self._sets.get(request.set).takes if take.examples]
+        takes = [take for take in self._sets.get(request.set).takes if take.labels]
         if not takes:
             raise Refusal(f"the set {request.set} has no recording of an action to repeat: record an action first")
         newest = max(takes, key=lambda take: (take_number(take.id), take.created, take.id))

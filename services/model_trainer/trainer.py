@@ -11,6 +11,7 @@ from actum.commands import Command, NoFields
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, Counters, Tick
 from model_trainer.changes import Changes, refusing
+from model_trainer.correction_commands import CorrectionCommands
 from model_trainer.example_commands import ExampleCommands
 from model_trainer.job_commands import JobCommands, Start
 from model_trainer.job_process import JobProcess
@@ -57,6 +58,7 @@ class ModelTrainer:
         self._models = ModelStore(folder / "models", model, folder / MODEL, now_ns)
         self._examples = ExampleCommands(sets, self._models, self._changes)
         self._takes = TakeCommands(sets, self._changes, self._examples.remove)
+        self._corrections = CorrectionCommands(sets, self._changes)
         self._jobs = JobCommands(
             sets,
             self._models,
@@ -94,7 +96,8 @@ class ModelTrainer:
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
         """What can be asked."""
-        groups = (self._set_commands, self._takes, self._examples, self._jobs, self._model_commands)
+        recording = self._takes, self._corrections, self._examples
+        groups = (self._set_commands, *recording, self._jobs, self._model_commands)
         own = Command("state", NoFields, State, self._describe)
         return (own, *(refusing(command) for group in groups for command in group.commands))
 
@@ -104,6 +107,7 @@ class ModelTrainer:
             case Skeleton() | Segment():
                 if isinstance(message, Skeleton):
                     self._newest_ns = message.stamp_ns
+                    self._corrections.receive(message)
                 self._takes.receive(message, self.counters)
                 return []
             case Tick():

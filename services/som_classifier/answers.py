@@ -1,16 +1,26 @@
 """The messages in which the classifier answers."""
 
+from collections.abc import Mapping
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import AUTO, Action, Posture, Segment, Tensor
+from actum.messages import AUTO, Action, HeldBack, Posture, Segment, Tensor, WhyHeldBack
 from actum.skeletons import JOINTS
 from som_classifier.frames import Frame
 from som_classifier.model import Recognition
 from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.spotting.spotted import Ongoing
+
+WHY_HELD_BACK: Mapping[WhyHeldBack, str] = {
+    "unknown": "like {}, but not like enough",
+    "disabled": "{} is switched off in the settings",
+    "pause": "{} follows the action before it too soon for the setting shortest_pause_s",
+    "cooldown": "{} follows the one before it too soon for the setting cooldown_s",
+    "unanswerable": "perhaps {}, but with too few usable frames to recognise",
+}
+"""The reasons in words; `{}` stands for the action."""
 
 
 def partial_action(segment: OpenSegment, recognition: Recognition, frames: list[Frame], posture: Posture) -> Action:
@@ -85,6 +95,27 @@ def final_action(
         familiarity=recognition.familiarity if recognition else None,
         missing_joints=_missing(closed.frames),
         **more,
+    )
+
+
+def held_back(
+    closed: ClosedSegment, action: str, recognition: Recognition | None, why: WhyHeldBack, sensor: str, session_id: str
+) -> HeldBack:
+    """Say of a segment that was found that it is not published as `action`, and why."""
+    familiarity = None if recognition is None else recognition.familiarity
+    exactly = f": {familiarity:.2f}" if why == "unknown" and familiarity is not None else ""
+    return HeldBack(
+        stamp_ns=closed.end_ns,
+        sensor=sensor,
+        agent=closed.agent,
+        start_ns=closed.start_ns,
+        end_ns=closed.end_ns,
+        action=action,
+        confidence=0.0 if recognition is None else recognition.confidence,
+        familiarity=familiarity,
+        why=why,
+        sentence=WHY_HELD_BACK[why].format(action) + exactly,
+        session_id=session_id,
     )
 
 

@@ -1,15 +1,15 @@
 """The classifier's pure step: postures, and marks where there are any, become partial and final actions."""
 
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Any, Protocol
+from typing import Any, Literal, Protocol
 
 from actum import keys
 from actum.commands import Command, NoFields, Refusal
-from actum.messages import AUTO, Action, Message, Posture, Segment
+from actum.messages import AUTO, Action, Message, Posture, Segment, WhyHeldBack
 from actum.node import Counters, Tick
 from actum.parameters import LiveParameters
 from actum.states import State
-from som_classifier.answers import final_action, ongoing_action, own_mark, partial_action, tensor
+from som_classifier.answers import final_action, held_back, ongoing_action, own_mark, partial_action, tensor
 from som_classifier.frames import Frame
 from som_classifier.model import Model, Recognition
 from som_classifier.model_loading import WatchedModel
@@ -22,6 +22,8 @@ from som_classifier.spotting.search import Search
 from som_classifier.spotting.spotted import Ongoing, SpottedSegment
 from som_classifier.streams import Stream
 
+Fate = WhyHeldBack | Literal["told", "marked"]
+"""What becomes of a segment that was found: published, answered by its mark, or held back."""
 POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
 
@@ -175,19 +177,22 @@ class SomClassifier:
             yield own_mark("start", closed, self._sensor)
             yield own_mark("end", closed, self._sensor)
             yield self._answer(closed, recognition, None)
+        elif fate != "marked":
+            action = found.label if recognition is None else recognition.label
+            yield held_back(closed, action, recognition, fate, self._sensor, self._session)
 
-    def _fate(self, closed: ClosedSegment, recognition: Recognition | None, search: Search) -> str:
-        """Decide what becomes of a segment that was found: `told`, or why it is not.
+    def _fate(self, closed: ClosedSegment, recognition: Recognition | None, search: Search) -> Fate:
+        """Decide what becomes of a segment that was found.
 
         The search knows no more of other doings than the background it was trained on; what it never saw is unlike
         what was taught. The user's options hold for the action that would be published.
         """
         if recognition is None:
             return "unanswerable"
-        if recognition.unknown or recognition.doubtful:
-            return "unknown"
         if self._segmenter.is_marked(closed.agent, closed.start_ns, closed.end_ns):
             return "marked"
+        if recognition.unknown or recognition.doubtful:
+            return "unknown"
         return search.admission.admit(recognition.label, closed.start_ns, closed.end_ns) or "told"
 
     def _ongoing(self, ongoing: Ongoing, stream: Stream, posture: Posture) -> Iterator[Action]:

@@ -5,7 +5,7 @@ from typing import Any
 from pydantic_core import to_json
 
 from actum import keys
-from actum.messages import Action, Event, Image, Message, Segment, Status, Training
+from actum.messages import Action, Event, HeldBack, Image, Message, Segment, Status, Training
 from web_dashboard.hub import Envelope
 
 LENGTH_BYTES = 4
@@ -21,7 +21,7 @@ def envelope_of(message: Message) -> Envelope:
         header = text(type=kind, **message.model_dump(exclude={"data"})).encode()
         length = len(header).to_bytes(LENGTH_BYTES, "little")
         return Envelope(stream, length + header + message.data)
-    queued = isinstance(message, Segment | Event) or (isinstance(message, Action) and message.final)
+    queued = isinstance(message, Segment | Event | HeldBack) or (isinstance(message, Action) and message.final)
     kept = isinstance(message, Status | Training)
     return Envelope(stream, text(type=kind, **message.model_dump()), queued, kept)
 

@@ -30,6 +30,7 @@ class WebDashboard:
         keys.OBJECTS,
         keys.SEGMENT,
         keys.ACTION,
+        keys.HELD_BACK,
         keys.EVENT,
         keys.STATUS,
         keys.TRAINING,

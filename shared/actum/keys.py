@@ -61,6 +61,8 @@ SEGMENT = Topic("segment", m.Segment, congestion="block", priority="interactive_
 """Start and end marks: none may be lost. Two a second for two minutes are kept."""
 ACTION = Topic("action/{}", m.Action, cache=64)
 """The classifier's estimates."""
+HELD_BACK = Topic("held_back/{}", m.HeldBack, cache=64)
+"""What the classifier found and did not publish as an action."""
 EVENT = Topic("event/{}", m.Event, cache=64)
 """Events, one for each segment: verb, object and result."""
 STATUS = Topic("status/{}", m.Status, priority="background")
@@ -80,6 +82,7 @@ TOPICS: tuple[Topic, ...] = (
     OBJECTS,
     SEGMENT,
     ACTION,
+    HELD_BACK,
     EVENT,
     STATUS,
     INFO,
@@ -207,7 +210,7 @@ def address_of(message: m.Message) -> Address:
     match message:
         case m.Image():
             return Address(DEPTH if message.format == "depth16_mm" else COLOR, sensor, None)
-        case m.Posture() | m.Action() | m.Event():
+        case m.Posture() | m.Action() | m.HeldBack() | m.Event():
             return Address(_BY_PREFIX[message.SCHEMA.removeprefix("actum.")], sensor, str(message.agent))
         case m.Status() | m.Info():
             return Address(_BY_PREFIX[message.SCHEMA.removeprefix("actum.")], sensor, message.service)

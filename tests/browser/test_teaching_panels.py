@@ -1,13 +1,16 @@
 """The panels on which people teach: recording, mending, training, testing, models, parameters; and hostile input."""
 
 import re
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from accessibility import serious_faults
+from actum.messages import NONE, HeldBack, Skeleton
+from actum.node import SECOND_NS
 from lessons import SET, Lesson
 from live import wait_until
 from model_trainer.job_process import Progressing
@@ -321,6 +324,52 @@ def test_a_model_is_trained_put_into_use_compared_undone_and_deleted(room: Lesso
     assert room.teacher.model.exists()
     assert models.get_by_role("button", name="Back to the previous model").is_disabled()
     says(models, "model-list", f"In use: model {name}, trained on the set {SET}.")
+
+
+def held_back(frames: Sequence[Skeleton], from_s: int, agent: int = 1) -> HeldBack:
+    """Two seconds of these frames that are like a wave, but not like enough."""
+    start_ns, end_ns = (frames[0].stamp_ns + seconds * SECOND_NS for seconds in (from_s, from_s + 2))
+    return HeldBack(
+        stamp_ns=end_ns, sensor="kinect0", agent=agent, start_ns=start_ns, end_ns=end_ns, action="wave",
+        confidence=0.8, familiarity=0.31, why="unknown", sentence=f"like wave, but not like enough: 0.{from_s}",
+    )  # fmt: skip
+
+
+def test_what_was_held_back_is_corrected_by_one_click_each_and_the_model_made_anew(room: Lesson, models: Any) -> None:
+    press(models, "Train")
+    wait_until(lambda: bool(room.teacher.jobs), "it is trained")
+    room.end_job(trained())
+    press(models, "Use this model")
+    says(models, "model-list", "In use: model")
+    frames = Stream().repeat(WAVES).skeletons(first_ns=1_700_000_000 * SECOND_NS)
+    room.see(frames)
+    go_to(models, "live")
+    for from_s, really, kept in ((1, "It was wave", "an example of wave"), (4, "None of the actions", "none of the")):
+        room.page.give(held_back(frames, from_s))
+        models.get_by_role("button", name=f"like wave, but not like enough: 0.{from_s}, not told").click()
+        says(models, "explanation", f"Not told: like wave, but not like enough: 0.{from_s}")
+        press(models, really)
+        says(models, "explanation", f"Kept in the set {SET} as {kept}")
+    assert Counter(each["label"] for each in room.teacher.examples(SET)) == {"wave": 6, "goggles": 5, NONE: 1}
+    press(models, "Update the model (2 corrections)")
+    wait_until(lambda: len(room.teacher.jobs) == 2, "it is trained anew")
+    room.end_job(trained())
+    says(models, "explanation", "The new model is in use within two seconds.")
+
+
+def test_a_correction_that_is_refused_is_told(room: Lesson, models: Any) -> None:
+    press(models, "Train")
+    wait_until(lambda: bool(room.teacher.jobs), "it is trained")
+    room.end_job(trained())
+    press(models, "Use this model")
+    says(models, "model-list", "In use: model")
+    frames = Stream().repeat(WAVES[:1]).skeletons(first_ns=1_700_000_000 * SECOND_NS)
+    room.see(frames)
+    go_to(models, "live")
+    room.page.give(held_back(frames, 1, agent=2))
+    models.get_by_role("button", name="like wave, but not like enough: 0.1, not told").click()
+    press(models, "None of the actions")
+    says(models, "explanation", "0 frames of person 2 are left of this event")
 
 
 def test_a_model_that_somebody_named_is_said_to_be_only_read(room: Lesson, models: Any) -> None:

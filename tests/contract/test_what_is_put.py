@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum import keys, messages
-from actum.messages import Info, Message, Status, Training, Truth
+from actum.messages import HeldBack, Info, Message, Status, Training, Truth
 from actum.node import SECOND_NS, TICK_NS, Tick
 from node_cases import CASES, Case, every_node_finding_too
 from wire import Wire, packed
@@ -17,6 +17,10 @@ STRANGERS: tuple[Message, ...] = (
     Truth(
         stamp_ns=1, sensor="kinect0", kind="start", segment_id="s", agent=1, hand="left", action="lift", object_id=1,
         object_name="cup", displacement_m=None,
+    ),
+    HeldBack(
+        stamp_ns=1, sensor="kinect0", agent=1, start_ns=0, end_ns=1, action="lift", confidence=0.5, familiarity=0.1,
+        why="unknown", sentence="like lift, but not like enough: 0.10",
     ),
     Info.model_validate(HEALTH | {"version": "1", "schemas": [], "joint_names": []}),
     Status.model_validate(

@@ -1,6 +1,8 @@
 """Actions that nobody marked: the node marks and answers what its model spots, per person, by stamps alone."""
 
 import random
+import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import cache
@@ -10,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from actum.messages import AUTO, Action, Message, Posture, Segment
+from actum.messages import AUTO, Action, HeldBack, Message, Posture, Segment
 from actum.node import SECOND_NS, Tick, replay
 from people import FRAME_NS, reaching, skeleton
 from performers import TINY_PAPER
@@ -120,20 +122,34 @@ def test_what_another_classifier_has_marked_is_not_answered_again() -> None:
     assert not node.counters.rejects
 
 
-def test_a_segment_that_cannot_be_answered_is_counted_and_not_put() -> None:
+def held_back(messages: Iterable[Message]) -> list[tuple[str, int, int, str, str]]:
+    found = [m for m in messages if isinstance(m, HeldBack)]
+    return [(m.action, m.start_ns, m.end_ns, m.why, m.sentence.partition(":")[0]) for m in found]
+
+
+def test_a_segment_that_cannot_be_answered_is_held_back_and_counted() -> None:
     lost = [p.model_copy(update={"valid": False, "reason": "lost", "joints": None}) for p in stream()]
     node = SomClassifier(finding(tiny_model(), LIFT))
-    assert [m for m in put_by(node, lost) if not isinstance(m, Action) or m.final] == []
+    put = put_by(node, lost)
+    assert not found(put)
+    few = "perhaps lift, but with too few usable frames to recognise"
+    assert held_back(put) == [("lift", LIFT.start_ns, LIFT.end_ns, "unanswerable", few)]
     assert (node.counters.counts, node.counters.rejects) == ({"found": 1, "unanswerable": 1}, {})
 
 
 @pytest.mark.parametrize("called", ["unknown", "doubtful"])
-def test_what_the_recogniser_calls_unknown_is_counted_and_not_put(called: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_recogniser_calls_unknown_is_held_back_and_counted(
+    called: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """The search may take for an action what no background sample has shown."""
     recognise = PyramidModel.recognise
     monkeypatch.setattr(PyramidModel, "recognise", lambda *asked: replace(recognise(*asked), **{called: True}))
     node = SomClassifier(finding(tiny_model(), LIFT))
-    assert not found(put_by(node, stream()))
+    put = put_by(node, stream())
+    assert not found(put) and not [m for m in put if isinstance(m, Segment)]
+    [(_, start_ns, end_ns, why, sentence)] = held_back(put)
+    assert (start_ns, end_ns, why) == (LIFT.start_ns, LIFT.end_ns, "unknown")
+    assert re.fullmatch(r"like \w+, but not like enough", sentence)
     assert node.counters.counts == {"found": 1, "unknown": 1} and not node.counters.rejects
 
 
@@ -319,6 +335,8 @@ def test_what_the_user_does_not_want_told_is_counted() -> None:
         put = put_by(node, stream())
         told = {(m.segment_id, m.final) for m in put if isinstance(m, Action)}
         assert len({name for name, final in told if final}) == node.counters.counts["told"]
+        kept = Counter(m.why for m in put if isinstance(m, HeldBack))
+        assert kept + Counter(told=node.counters.counts["told"]) == node.counters.counts - Counter(found=2)
         assert not node.counters.rejects
         return dict(node.counters.counts)
 

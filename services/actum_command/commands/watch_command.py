@@ -34,6 +34,10 @@ def watch(
             help="print each message with all its fields as one line of JSON; binary fields are base64 (URL-safe)",
         ),
     ] = False,
+    with_held_back: Annotated[
+        bool,
+        typer.Option("--held-back", help="also print what was found but not told, with the reason"),
+    ] = False,
     recorded: Annotated[
         list[Path] | None,
         typer.Option(
@@ -53,7 +57,8 @@ def watch(
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):
         fail(f"{name!r} is not a topic: use one or more of {', '.join(WATCHABLE)}")
-    wanted = [topic for topic in named.values() if topic is not None] or BY_DEFAULT
+    wanted = [topic for topic in named.values() if topic is not None] or [*BY_DEFAULT]
+    wanted += [keys.HELD_BACK] if with_held_back and keys.HELD_BACK not in wanted else []
     if recorded:
         _show_recorded(recorded, wanted, as_json)
         return

@@ -7,7 +7,7 @@ const GIVEN_UP_MS = 6000;     // a network that is gone leaves the socket open a
 const RETRY_MS = [300, 700, 1500, 3000];
 const WATCH_MS = 500;
 const ANSWER_MS = 60_000;     // the page's service gives up a service after 11 s, and asks eight at a time
-const QUEUED = new Set(["segment", "event", "training", "info", "hello", "pulse"]);
+const QUEUED = new Set(["segment", "event", "held_back", "training", "info", "hello", "pulse"]);
 
 class Link {
   constructor() {

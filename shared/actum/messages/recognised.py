@@ -45,6 +45,10 @@ CUT = "cut"
 """The origin of marks that `actum record --times` or `actum label cut` cut out of a recording."""
 
 
+NONE = "none"
+"""The label of segments that are like an action and are none: models learn from them that they are not."""
+
+
 class Segment(Message):
     """A start or end mark; anyone may put one with just `kind` and `segment_id`."""
 
@@ -60,7 +64,8 @@ class Segment(Message):
     hand: Hand | None = None
     """Which hand acts; null where it is not known."""
     label: Annotated[Name | None, AfterValidator(lambda text: text or None)] = None
-    """What is done, in recordings to learn from; it is never used to recognise. An empty label is none."""
+    """What is done, in recordings to learn from; it is never used to recognise. The label `none` says that the segment
+    is like an action but is none of them. An empty label is null."""
     origin: Name | None = None
     """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; auto, the
     classifier itself, which answers it, and no other does; cut, `actum record --times` or `actum label cut`; null, a
@@ -130,6 +135,37 @@ class Action(Message):
     """The way over the first map, a row and a column per step; null unless asked for."""
     session_id: Name = ""
     """The run of the source, as the posture's; empty where no posture had come."""
+
+
+WhyHeldBack = Literal["unknown", "disabled", "pause", "cooldown", "unanswerable"]
+"""Why a segment that was found is not published; `status` counts by these words."""
+
+
+class HeldBack(Message):
+    """A segment that the classifier found but did not publish as an action, and the reason."""
+
+    SCHEMA = "actum.held_back"
+    agent: AgentId
+    """Who acts."""
+    start_ns: Stamp
+    """The stamp of its start (ns)."""
+    end_ns: Stamp
+    """The stamp of its end (ns)."""
+    action: Name
+    """The action that it is most like."""
+    confidence: FiniteFloat
+    """The probability that `action` is right if it is one of the trained actions, 0 to 1."""
+    familiarity: FiniteFloat | None
+    """Probability that the segment is a true instance of `action`, not another movement; null where the model cannot
+    tell."""
+    why: WhyHeldBack
+    """Why it is not published: it is not enough like `action` (unknown); the settings disable the action (disabled);
+    it follows another action too soon (pause), or one of the same name (cooldown), for the settings; or it has too few
+    usable frames (unanswerable)."""
+    sentence: str
+    """The reason in one line, for people."""
+    session_id: Name = ""
+    """The run of the source, as the action's."""
 
 
 class ObjectPose(Model):

@@ -1,4 +1,4 @@
-// What is remembered of each segment: its marks, its early answers, its final action, its event.
+// What is remembered of each segment: its marks, its early answers, its final action, its event; and of what was held back.
 
 import { guarded } from "../guarded.js";
 import { link } from "../link.js";
@@ -31,6 +31,11 @@ link.on("action", (action) => {
   }
   tell(segment);
 });
+link.on("held_back", (held) => {
+  const segment = of(`held back ${held.agent} ${held.start_ns}`, held.session_id);
+  Object.assign(segment, { held, agent: held.agent, start: held.start_ns, end: held.end_ns });
+  tell(segment);
+});
 link.on("event", (event) => {
   const segment = of(event.segment_id, event.session_id);
   Object.assign(segment, { event, agent: event.agent, start: event.start_ns, end: event.end_ns });
@@ -41,7 +46,7 @@ link.on("event", (event) => {
 function of(id, session = "") {
   if (session && (segments.get(id)?.session || session) !== session) segments.delete(id);
   if (!segments.has(id)) {
-    segments.set(id, { id, session, agent: null, start: null, end: null, early: [], action: null, event: null });
+    segments.set(id, { id, session, agent: null, start: null, end: null, early: [], action: null, event: null, held: null });
     if (segments.size > MOST) segments.delete(segments.keys().next().value);
   }
   const segment = segments.get(id);

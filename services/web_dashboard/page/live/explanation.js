@@ -3,6 +3,7 @@
 import { counted } from "../asking.js";
 import { card, element, percent, seconds } from "../elements.js";
 import { segmentOf } from "./answers.js";
+import { Correcting } from "./correcting.js";
 import { Bars } from "./neurons.js";
 
 let view;
@@ -11,8 +12,9 @@ let chosen = null;
 export function explanation() {
   const newer = element("button", { type: "button", class: "small", hidden: true, on: { click: () => follow() } }, "Show the newest answer");
   const body = element("div", { class: "explained", "aria-live": "off" }, element("p", { class: "caption" }, "Shows the reasons for the newest answer, or for the one that you press in the timeline."));
-  view = { newer, body };
-  return card("explanation", "Reasons for an answer", { controls: [newer] }, body);
+  const correcting = new Correcting();
+  view = { newer, body, correcting };
+  return card("explanation", "Reasons for an answer", { controls: [newer] }, body, correcting.element);
 }
 
 // Explains one segment's answer until another is chosen.
@@ -33,19 +35,35 @@ function follow() {
 }
 
 function show(segment) {
-  const { event, action } = segment;
+  const { event, action, held } = segment;
   const answer = event ?? action;
+  view.correcting.show(segment);
+  if (held) return showHeld(segment);
   if (!answer) return view.body.replaceChildren(element("p", {}, "This segment has no answer yet."));
   const bars = element("ul", { class: "bars", "aria-label": "Activity of each action's neuron in this answer" });
   if (answer.valid && Object.keys(answer.activations).length) new Bars(bars).show(answer.activations, answer.action);
   view.body.replaceChildren(
     element("p", { class: "sentence" }, answer.valid ? (event?.sentence ?? answer.action) : `No answer: ${answer.reason}`),
-    element("dl", {}, ...facts(segment).flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, text)])),
+    described(facts(segment)),
     bars,
   );
 }
 
-// The reasons, each as [what, in words]; those that are not known are left out.
+function showHeld({ held, start, end }) {
+  view.body.replaceChildren(
+    element("p", { class: "sentence" }, `Not told: ${held.sentence}`),
+    described([
+      ["Segment", `${seconds((end - start) / 1e9)}, found by the classifier`],
+      ["Familiarity", held.familiarity === null ? null : percent(held.familiarity)],
+    ]),
+  );
+}
+
+function described(facts) {
+  return element("dl", {}, ...facts.filter(([, text]) => text).flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, text)]));
+}
+
+// The reasons, each as [what, in words]; those that are not known are empty.
 function facts(segment) {
   const { event, action, start, end, early, marked, origin } = segment;
   const answer = event ?? action;
@@ -61,7 +79,7 @@ function facts(segment) {
     ["Moved", event?.motion && `${event.result}${event.agrees === null ? "" : event.agrees ? ", as expected of this action" : ", not as expected of this action"}`],
     ["Why no object", event?.why],
     ["Based on", `${counted(answer.frames, "frame")}${answer.missed ? `, ${answer.missed} lost` : ""}${answer.missing_joints.length ? `; without ${answer.missing_joints.join(", ").replaceAll("_", " ")}` : ""}`],
-  ].filter(([, text]) => text);
+  ];
 }
 
 function margin(activations) {

@@ -79,7 +79,7 @@ class Lane {
   }
 
   showSegment(segment) {
-    const { event, action, start, end, marked } = segment;
+    const { event, action, held, start, end, marked } = segment;
     if (!event && !action && end === null && !marked) return;
     const button = this.buttons.get(segment.id) ?? this.add(segment);
     const [left, right] = [start, end ?? this.now].map((stamp) => 100 * (1 - (this.now - stamp) / this.span));
@@ -87,9 +87,11 @@ class Lane {
     button.style.width = `${Math.min(right, 100) - Math.max(left, 0)}%`;
     const label = labelOf(segment);
     if (button.textContent !== label) button.textContent = label;
-    button.title = event?.sentence ?? label;
-    button.setAttribute("aria-label", `${event?.sentence ?? label}, ${marked ? "marked" : "found"}`);
+    const sentence = held?.sentence ?? event?.sentence ?? label;
+    button.title = sentence;
+    button.setAttribute("aria-label", `${sentence}, ${held ? "not told" : marked ? "marked" : "found"}`);
     button.style.setProperty("--action", colourOf(event?.valid === false ? null : (event?.action ?? action?.action)));
+    button.classList.toggle("held", Boolean(held));
     button.classList.toggle("marked", Boolean(marked));
     button.classList.toggle("open", end === null);
     button.classList.toggle("invalid", event?.valid === false || Boolean(event?.unknown));
@@ -117,7 +119,8 @@ class Lane {
   }
 }
 
-function labelOf({ event, action, end }) {
+function labelOf({ event, action, held, end }) {
+  if (held) return `${held.action}?`;
   if (event?.valid === false) return "?";
   if (event) return event.unknown ? "unknown" : event.action;
   if (action) return action.action ?? "?";

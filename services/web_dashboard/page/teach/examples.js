@@ -9,6 +9,7 @@ import { trainer } from "../trainer.js";
 import { Example } from "./example.js";
 import { arePlaying, play } from "./film.js";
 
+const NONE = "none";            // the label of what is like an action and is none
 const AGAIN_MS = 1000;          // until a film that was refused is asked for again: twice as long after each refusal
 const LONGEST_AGAIN_MS = 60_000;
 
@@ -77,9 +78,10 @@ class Examples {
   }
 
   group(set, label, listed) {
-    const remove = button("Delete all", () => this.deleteAction(set, label, listed.length), { label: `Delete all examples of ${label}` });
+    const isNone = label === NONE;
+    const remove = isNone ? null : button("Delete all", () => this.deleteAction(set, label, listed.length), { label: `Delete all examples of ${label}` });
     const head = element("div", { class: "group-head", style: { "--action": colourOf(label) } },
-      element("i", { class: "swatch" }), element("h3", {}, label), element("span", { class: "caption" }, counted(listed.length, "example")), remove);
+      element("i", { class: "swatch" }), element("h3", {}, isNone ? "none of the actions" : label), element("span", { class: "caption" }, counted(listed.length, "example")), remove);
     const tiles = listed.map((each) => this.tiles.get(keyOf(set, each)));
     tiles.forEach((tile, i) => tile.call(i + 1));
     return element("section", { class: "group", "aria-label": `Examples of ${label}` }, head, element("ul", { class: "tiles" }, ...tiles.map((tile) => tile.element)));

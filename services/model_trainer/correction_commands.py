@@ -1,0 +1,63 @@
+"""The command that makes an example, or a counterexample, of what the classifier found."""
+
+from typing import Any
+
+from actum.commands import Command, Refusal
+from actum.limits import MAX_SEGMENT_NS
+from actum.messages import MANUAL, NONE, Skeleton, segment_marks
+from actum.node import SECOND_NS
+from actum_examples.marking import Marking, finish_take
+from model_trainer.changes import Changes, on_disk
+from model_trainer.recent_frames import LONGEST_S, RecentFrames
+from model_trainer.replies import TakeReply
+from model_trainer.requests import Correct
+from model_trainer.set_store import SetStore
+
+FEWEST_FRAMES = 5
+"""Frames of a correction: fewer show no movement."""
+NAME = "corrected-1"
+"""The segment of a correction, in its take of its own."""
+
+
+class CorrectionCommands:
+    """Says what was really done in an event that was told wrongly, or held back wrongly."""
+
+    def __init__(self, sets: SetStore, changes: Changes) -> None:
+        self._sets = sets
+        self._changes = changes
+        self._recent = RecentFrames()
+
+    @property
+    def commands(self) -> tuple[Command[Any, Any], ...]:
+        """What can be asked."""
+        return (Command("correct", Correct, TakeReply, self._correct),)
+
+    def receive(self, skeleton: Skeleton) -> None:
+        """Keep a frame: somebody may say of it later what was done."""
+        self._recent.receive(skeleton)
+
+    def _correct(self, request: Correct) -> TakeReply:
+        """Add an event of the last ten minutes to a set: as an example of an action, or as none of the actions."""
+        if not 0 < request.end_ns - request.start_ns <= MAX_SEGMENT_NS:
+            raise Refusal(
+                f"the event has to end after it starts, by at most {MAX_SEGMENT_NS // SECOND_NS} s: use the start_ns "
+                "and end_ns of an event or of a held_back message"
+            )
+        self._sets.folder(request.set)
+        frames = list(self._recent.of(request.agent, request.start_ns, request.end_ns))
+        if len(frames) < FEWEST_FRAMES:
+            raise Refusal(
+                f"{len(frames)} frames of person {request.agent} are left of this event, at least {FEWEST_FRAMES} are "
+                f"needed: correct an event within {LONGEST_S / 60:.0f} minutes, before the sensor or the trainer "
+                "restarts"
+            )
+        first, last = frames[0], frames[-1]
+        label = request.label or NONE
+        marks = segment_marks(first.stamp_ns, last.stamp_ns, first.sensor, NAME, label, request.agent, origin=MANUAL)
+        with on_disk():
+            recorder = self._sets.recorder(request.person, "action")
+            for frame in frames:
+                recorder.write(frame)
+            take = self._sets.add(request.set, finish_take(recorder, Marking(marks)))
+        self._changes.revision += 1
+        return TakeReply(take=take.id, examples=len(take.examples), doubts=[])

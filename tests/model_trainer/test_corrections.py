@@ -1,0 +1,111 @@
+"""An event that was told wrongly, or held back, becomes an example or a counterexample by one command."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from actum.codec import encode
+from actum.commands import Refusal
+from actum.messages import NONE, Skeleton
+from actum.node import SECOND_NS
+from actum.recording import Recording
+from actum_model_trainer.samples import samples_from
+from model_trainer import recent_frames
+from model_trainer.recent_frames import RecentFrames
+from repeating import FRAME_NS, Stream
+from teaching import WAVES, Teacher
+
+
+@pytest.fixture
+def teacher(tmp_path: Path) -> Teacher:
+    made = Teacher(tmp_path)
+    made.ask("create_set", set="kitchen")
+    made.act(Stream().repeat(WAVES))
+    return made
+
+
+def event(**fields: Any) -> dict[str, Any]:
+    """The second of what the person did, two seconds long."""
+    start_ns = 8 * SECOND_NS
+    return {"set": "kitchen", "agent": 1, "start_ns": start_ns, "end_ns": start_ns + 2 * SECOND_NS} | fields
+
+
+def take_of(teacher: Teacher, name: str) -> Recording:
+    return Recording(teacher.folder / f"sets/kitchen/{name}.mcap")
+
+
+def test_an_event_becomes_an_example_of_the_action_that_was_done(teacher: Teacher) -> None:
+    reply = teacher.ask("correct", **event(label="wave", person="anna"))
+    [example] = teacher.examples()
+    assert reply["examples"] == 1 and (example["label"], example["person"]) == ("wave", "anna")
+    [sample] = samples_from([take_of(teacher, reply["take"])]).usable
+    assert sample.label == "wave" and sample.stamps_ns[0] - event()["start_ns"] in range(FRAME_NS)
+    assert event()["end_ns"] - sample.stamps_ns[-1] in range(FRAME_NS)
+
+
+def test_an_event_that_was_none_is_no_example_but_is_learnt_from(teacher: Teacher) -> None:
+    reply = teacher.ask("correct", **event())
+    samples = samples_from([take_of(teacher, reply["take"])])
+    assert samples.usable == samples.unusable == []
+    [stream] = samples.streams
+    assert [label for *_, label in stream.segments] == [NONE] and stream.marked.truths == []
+    [example] = teacher.examples()
+    teacher.ask("delete", set="kitchen", example=example["id"])
+    assert teacher.examples() == []
+
+
+def test_only_the_frames_of_the_event_and_of_who_acted_are_stored(teacher: Teacher) -> None:
+    reply = teacher.ask("correct", **event())
+    frames = [m for m in take_of(teacher, reply["take"]).messages() if isinstance(m, Skeleton)]
+    assert {each.agent for frame in frames for each in frame.agents} == {1}
+    assert all(event()["start_ns"] <= frame.stamp_ns <= event()["end_ns"] for frame in frames)
+    with pytest.raises(Refusal, match="0 frames of person 2 are left"):
+        teacher.ask("correct", **event(agent=2))
+
+
+def test_what_is_too_long_or_ends_before_it_starts_is_refused(teacher: Teacher) -> None:
+    for end_ns in (event()["start_ns"], event()["start_ns"] + 61 * SECOND_NS):
+        with pytest.raises(Refusal, match="has to end after it starts"):
+            teacher.ask("correct", **event(end_ns=end_ns))
+
+
+def test_a_set_that_is_not_there_is_refused_before_anything_is_written(teacher: Teacher) -> None:
+    with pytest.raises(Refusal, match="there is no set 'garden'"):
+        teacher.ask("correct", **event(set="garden"))
+    assert not list((teacher.folder / "sets").rglob("*.mcap"))
+
+
+def test_the_last_take_is_redone_though_events_were_corrected_after_it(teacher: Teacher) -> None:
+    teacher.teach("wave", WAVES)
+    teacher.ask("correct", **event(start_ns=teacher.examples()[0]["start_ns"], end_ns=teacher.examples()[0]["end_ns"]))
+    teacher.ask("redo_last", set="kitchen")
+    assert teacher.tick().recording.label == "wave"
+    teacher.ask("discard")
+
+
+def frames(count: int, first_ns: int = SECOND_NS, session: str = "one") -> list[Skeleton]:
+    stream = Stream().repeat(WAVES)
+    return [each.model_copy(update={"session_id": session}) for each in stream.skeletons(first_ns=first_ns)][:count]
+
+
+def test_frames_are_kept_for_ten_minutes_and_within_their_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    recent, shown = RecentFrames(), frames(3)
+    late = [each.model_copy(update={"stamp_ns": each.stamp_ns + 601 * SECOND_NS}) for each in shown]
+    for frame in shown:
+        recent.receive(frame)
+    assert list(recent.of(1, 0, 2**61)) == shown
+    for frame in late:
+        recent.receive(frame)
+    assert list(recent.of(1, 0, 2**61)) == late
+    newest = late[-1].model_copy(update={"stamp_ns": late[-1].stamp_ns + 1})
+    monkeypatch.setattr(recent_frames, "MOST_BYTES", len(encode(newest).payload))
+    recent.receive(newest)
+    assert list(recent.of(1, 0, 2**61)) == [newest]
+
+
+def test_a_restart_of_the_sensor_forgets_what_was_before() -> None:
+    recent = RecentFrames()
+    for frame in [*frames(5), *(anew := frames(2, session="two"))]:
+        recent.receive(frame)
+    assert list(recent.of(1, 0, 2**61)) == anew
