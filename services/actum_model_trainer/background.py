@@ -30,8 +30,6 @@ LEAST_SPEED_M_S = 0.25
 """Mean of the five body parts' summed speed in a window: stillness is judged otherwise."""
 DRAWS_PER_WINDOW = 20
 """Windows that are looked at for each that is wanted, where people stand or are out of sight most of the time."""
-TIMES = 10
-"""How often a counterexample counts beside a window that is drawn: it is of this very person, sensor and mistake."""
 ARRAYS = ("motion", "postures", "velocities")
 
 
@@ -75,10 +73,9 @@ def _clip(stream: LabelledStream, segment: tuple[int, int, str]) -> LabelledStre
 def negatives_of(
     streams: Sequence[LabelledStream], durations_s: Array, count: int, rng: np.random.Generator
 ) -> list[SegmentSample]:
-    """Return the counterexamples among streams, each `TIMES` times, and windows that are drawn from all streams."""
+    """Return the counterexamples among streams, and windows that are drawn from all streams."""
     clips = [each for each in counterexamples(streams) if len(each.stamps_ns) >= FEWEST_FRAMES]
-    whole = [_cut(clip, 0, len(clip.stamps_ns)) for clip in clips]
-    return [*(each for each in whole for _ in range(TIMES)), *windows_of(streams, durations_s, count, rng)]
+    return [*(_cut(clip, 0, len(clip.stamps_ns)) for clip in clips), *windows_of(streams, durations_s, count, rng)]
 
 
 def windows_of(

@@ -98,6 +98,14 @@ class LabelledStream:
         )
 
     @property
+    def is_counterexample(self) -> bool:
+        """Whether all of it is labelled as none of the actions."""
+        of_none = [
+            (self.stamps_ns >= start) & (self.stamps_ns <= end) for start, end, own in self.segments if own == NONE
+        ]
+        return bool(of_none) and bool(np.any(of_none, axis=0).all())
+
+    @property
     def runs_ns(self) -> list[tuple[int, int]]:
         """The first and the last stamp of each time in which the person was seen without a longer break."""
         after = np.flatnonzero(np.diff(self.stamps_ns) > LONGEST_BREAK_NS) + 1

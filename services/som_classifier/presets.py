@@ -55,6 +55,7 @@ class Prior:
         least_from_one: the same where no person has performed an action more than once: they are lower then.
         log_error: the mean log(d²) of postures from the posture map that a person not trained on may well reach with a
             trained action, d in metres over all joints of a standard body.
+        threshold: completeness that what is found without marks must exceed.
     """
 
     people: float
@@ -64,6 +65,7 @@ class Prior:
     least_likeness: tuple[float, float]
     least_from_one: tuple[float, float]
     log_error: float
+    threshold: float
 
 
 @dataclass(frozen=True)
@@ -258,6 +260,7 @@ PYRAMID = PyramidPreset(
         least_likeness=(0.20, 0.30),
         least_from_one=(0.15, 0.25),
         log_error=-2.5,
+        threshold=0.5,
     ),
     spotting=SpottingPreset(
         interval_s=0.1,

@@ -11,6 +11,7 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.node import SECOND_NS
+from actum_model_trainer.confidence import averaged_with_prior
 from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import background_min
 from actum_model_trainer.progress import Progress
@@ -38,9 +39,13 @@ MIN_LOG_DURATION_SD = 0.15
 def with_spotting(
     model: PyramidModel, streams: Sequence[LabelledStream], preset: PyramidPreset, seed: int, progress: Progress
 ) -> PyramidModel:
-    """Return the model with the search, trained on whole streams; as it is where these hold no action or no window."""
+    """Return the model with the search, trained on whole streams; as it is where these hold no action or no window.
+
+    Counterexamples are left to the verifier: heads would learn that whoever acts in them never does anything. Few
+    people show little of how sure the search has to be of others: their threshold is averaged with the prior's.
+    """
     search, rng = preset.spotting, np.random.default_rng(seed)
-    usable = [stream for stream in streams if len(stream.stamps_ns) >= FEWEST_FRAMES]
+    usable = [each for each in streams if len(each.stamps_ns) >= FEWEST_FRAMES and not each.is_counterexample]
     untuned = _untuned(usable, model.labels, search)
     windows = [training_windows(each, model.labels, np.array(untuned.window_durations_s), rng) for each in usable]
     if not any(each.completeness.any() for each in windows):
@@ -57,7 +62,9 @@ def with_spotting(
         return model
     share, choice = _chosen(answered, SpottingModel(heads.all, untuned), model.labels, search)
     probability = _probability(_mixed(answered, share), model.labels)
-    learned = untuned.model_copy(update=choice.stored | {"probability": probability})
+    people = len({stream.person for stream in usable if stream.segments})
+    threshold = float(averaged_with_prior(choice.threshold, preset.prior.threshold, preset.prior, people))
+    learned = untuned.model_copy(update=choice.stored | {"threshold": threshold, "probability": probability})
     metadata = model.metadata.model_copy(update={"spotting": learned})
     return replace(model, heads=mixed_heads(heads.all, share), metadata=metadata)
 
