@@ -50,7 +50,7 @@ TINY = PyramidPreset(
         least_likeness=(0.2, 0.3),
         least_from_one=(0.15, 0.25),
         log_error=-2.5,
-        threshold=0.5,
+        threshold=0.3,
     ),
     spotting=SpottingPreset(
         interval_s=0.1,

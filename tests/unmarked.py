@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.messages import Posture, Segment, Skeleton
+from actum.node import Counters
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_model_trainer.samples import Samples, samples_from
@@ -19,8 +20,10 @@ from performers import HAND_PATHS, TINY, mark, posed
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from repeating import eased
+from som_classifier.frames import Frame
 from som_classifier.model import Model
 from som_classifier.pyramid_model import PyramidModel
+from som_classifier.segmenter import Segmenter
 
 SCRATCH_M = {4: np.array([0.0, -0.1, -0.1]), 5: np.array([-0.15, -0.45, -0.10])}
 """What people also do: how far the left elbow and hand go to the chin."""
@@ -118,3 +121,11 @@ def postures(skeletons: Iterable[Skeleton]) -> Iterator[Posture]:
 
 def bounds_ns(acts: Sequence[Act], first_ns: int = 0) -> list[tuple[int, int, str]]:
     return [(first_ns + act.first * FRAME_NS, first_ns + act.last * FRAME_NS, act.action) for act in acts]
+
+
+def encoded_live(model: Model, of: Scene, lost: frozenset[int] = frozenset()) -> list[Frame]:
+    """A scene's frames as the classifier has them; some never come."""
+    segmenter = Segmenter(Counters())
+    segmenter.streams.use(lambda: model.encoder().encode)
+    kept = [each for i, each in enumerate(of.skeletons()) if i not in lost]
+    return [frame for each in postures(kept) if (frame := segmenter.posture(each)[0]) is not None]

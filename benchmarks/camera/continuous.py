@@ -20,7 +20,7 @@ import numpy as np
 import zenoh
 
 from actum import codec, keys
-from actum.messages import Action, Skeleton
+from actum.messages import Action, Segment, Skeleton
 from actum.node import SECOND_NS
 from actum.recorder import Recorder
 from actum.recording import Recording
@@ -135,11 +135,15 @@ def taught(clips: Path, folder: Path) -> Path:
 
 def recorded(video: Joined, folder: Path) -> Recording:
     """Estimate the poses in a joined video, and mark what is labelled."""
-    settings = Settings(people=1, mirrored=True)
-    take = read_clip(video.path, WHOLE, LIVE.sensor, optics_of(settings), partial(estimator_of, settings))
-    path = folder / f"{video.person}.mcap"
-    with Recorder(path, person=video.person, source="video", **take.metadata) as recorder:
-        for message in (*take.frames, *video.marks(LIVE.sensor)):
+    return seen(video.path, folder / f"{video.person}.mcap", True, video.person, video.marks(LIVE.sensor))
+
+
+def seen(video: Path, path: Path, mirrored: bool, person: str = "", marks: Sequence[Segment] = ()) -> Recording:
+    """Estimate the poses in a video as the camera source does, and store them with marks."""
+    settings = Settings(people=1, mirrored=mirrored)
+    take = read_clip(video, WHOLE, LIVE.sensor, optics_of(settings), partial(estimator_of, settings))
+    with Recorder(path, person=person, source="video", **take.metadata) as recorder:
+        for message in (*take.frames, *marks):
             recorder.write(message)
     return Recording(path)
 

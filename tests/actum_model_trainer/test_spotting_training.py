@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum.messages import Segment, Skeleton
-from actum.node import SECOND_NS, Counters
+from actum.node import SECOND_NS
 from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream, Samples, samples_from
 from actum_model_trainer.spotting.common_head import mixed_heads, with_common
@@ -32,7 +32,6 @@ from som_classifier.kinematics import GAP_NS
 from som_classifier.model import Model
 from som_classifier.pyramid import SCALE
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.segmenter import Segmenter
 from som_classifier.spotting.pyramid_spotter import FEWEST_FRAMES, PyramidSpotter
 from som_classifier.spotting.spotted import SpottingOptions
 from som_classifier.spotting.spotting_model import (
@@ -41,7 +40,7 @@ from som_classifier.spotting.spotting_model import (
     SpottingModel,
     completeness_of_iou,
 )
-from unmarked import Scene, bounds_ns, postures, recorded, scene, spotting_model, taught
+from unmarked import Scene, bounds_ns, encoded_live, recorded, scene, spotting_model, taught
 
 LABELS = ["lift", "push", "swing"]
 METADATA = PyramidSpottingMetadata(
@@ -49,14 +48,6 @@ METADATA = PyramidSpottingMetadata(
     log_duration_sds=[0.3] * 3, thresholds=[0.45], false_alarms_per_min=[], recalls=[], threshold=0.45,
     probability=[1.0, 0.0], background_s=0.0,
 )  # fmt: skip
-
-
-def encoded_live(model: Model, of: Scene, lost: frozenset[int] = frozenset()) -> list[Frame]:
-    """A scene's frames as the classifier has them; some never come."""
-    segmenter = Segmenter(Counters())
-    segmenter.streams.use(lambda: model.encoder().encode)
-    kept = [each for i, each in enumerate(of.skeletons()) if i not in lost]
-    return [frame for each in postures(kept) if (frame := segmenter.posture(each)[0]) is not None]
 
 
 def stream_of(folder: Path, of: Scene, lost: frozenset[int] = frozenset()) -> LabelledStream:
@@ -307,6 +298,21 @@ def test_whole_clips_teach_a_search_that_says_that_it_has_seen_no_background(tmp
     model = spotting_of(taught_by(tmp_path, *clips, people=2))
     assert model.background_s == 0.0
     found_in(model, scene(seed=9))
+
+
+def test_the_fewer_people_the_nearer_the_threshold_is_to_the_priors() -> None:
+    high = replace(TINY, prior=replace(TINY.prior, threshold=0.9))
+    own = replace(TINY, prior=replace(TINY.prior, threshold=0.9, people=1e-9))
+    one = [replace(stream, person="the same") for stream in taught().streams]
+    chosen = threshold_of(train_to_spot(taught().usable, taught().streams, own))
+    assert threshold_of(train_to_spot(taught().usable, one, high)) == pytest.approx(0.9)
+    two = threshold_of(train_to_spot(taught().usable, taught().streams, high))
+    assert two == pytest.approx((4 * 0.9 + chosen) / 5, abs=1e-6)
+
+
+def threshold_of(model: Model) -> float:
+    assert isinstance(model, PyramidModel) and model.spotting is not None
+    return model.spotting.threshold
 
 
 def test_a_stream_without_any_action_is_background_alone() -> None:

@@ -12,7 +12,7 @@ from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_model_trainer.samples import samples_from
 from model_trainer import recent_frames
-from model_trainer.recent_frames import RecentFrames
+from model_trainer.recent_frames import SLACK_NS, RecentFrames
 from repeating import FRAME_NS, Stream
 from teaching import WAVES, Teacher
 
@@ -40,8 +40,8 @@ def test_an_event_becomes_an_example_of_the_action_that_was_done(teacher: Teache
     [example] = teacher.examples()
     assert reply["examples"] == 1 and (example["label"], example["person"]) == ("wave", "anna")
     [sample] = samples_from([take_of(teacher, reply["take"])]).usable
-    assert sample.label == "wave" and sample.stamps_ns[0] - event()["start_ns"] in range(FRAME_NS)
-    assert event()["end_ns"] - sample.stamps_ns[-1] in range(FRAME_NS)
+    assert sample.label == "wave" and sample.stamps_ns[0] - event()["start_ns"] in range(-SLACK_NS, FRAME_NS)
+    assert event()["end_ns"] - sample.stamps_ns[-1] in range(-SLACK_NS, FRAME_NS)
 
 
 def test_an_event_that_was_none_is_no_example_but_is_learnt_from(teacher: Teacher) -> None:
@@ -59,7 +59,8 @@ def test_only_the_frames_of_the_event_and_of_who_acted_are_stored(teacher: Teach
     reply = teacher.ask("correct", **event())
     frames = [m for m in take_of(teacher, reply["take"]).messages() if isinstance(m, Skeleton)]
     assert {each.agent for frame in frames for each in frame.agents} == {1}
-    assert all(event()["start_ns"] <= frame.stamp_ns <= event()["end_ns"] for frame in frames)
+    early_ns, late_ns = event()["start_ns"] - SLACK_NS, event()["end_ns"] + SLACK_NS
+    assert all(early_ns <= frame.stamp_ns <= late_ns for frame in frames)
     with pytest.raises(Refusal, match="0 frames of person 2 are left"):
         teacher.ask("correct", **event(agent=2))
 

@@ -1,7 +1,7 @@
 """Training of the completeness heads on windows: ridge regression, once on all windows and once without each fold."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,17 +19,21 @@ from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.spotting_model import CompletenessHeads
 
 
-@dataclass(frozen=True, eq=False)
 class FoldedHeads:
-    """Heads trained on all windows, and on those of all folds but one.
+    """Heads trained on the windows of all folds but one, and on all windows once these are asked for.
 
     Attributes:
-        all: on all.
         without: by the fold that was left out.
     """
 
-    all: CompletenessHeads
-    without: Sequence[CompletenessHeads]
+    def __init__(self, fit: Callable[[int | None], CompletenessHeads], fold_count: int) -> None:
+        self._fit = fit
+        self.without = [fit(fold) for fold in range(fold_count)]
+
+    @cached_property
+    def all(self) -> CompletenessHeads:
+        """Return the heads trained on all windows."""
+        return self._fit(None)
 
 
 class Folds:
@@ -112,13 +116,14 @@ def fit_heads(
         shrinkage: relative penalty.
     """
     mean, centred, products, penalty = dual_form(vectors, shrinkage)
+    products.ravel()[:: len(products) + 1] += penalty
 
     def without(fold: int | None) -> CompletenessHeads:
         kept = np.flatnonzero(folds != fold)
         kept_mean = completeness[kept].mean(axis=0) if len(kept) else np.zeros(completeness.shape[1])
-        regularised = products[np.ix_(kept, kept)] + penalty * np.eye(len(kept))
-        dual = np.linalg.solve(regularised, completeness[kept] - kept_mean)
-        axes = centred[kept].T @ dual.astype(np.float32)
+        dual = np.zeros(completeness.shape, np.float32)
+        dual[kept] = np.linalg.solve(products[np.ix_(kept, kept)], completeness[kept] - kept_mean)
+        axes = centred.T @ dual
         return CompletenessHeads(axes, (kept_mean - mean @ axes).astype(np.float32))
 
-    return FoldedHeads(without(None), [without(fold) for fold in range(fold_count)])
+    return FoldedHeads(without, fold_count)

@@ -59,7 +59,7 @@ def _answers(
 ) -> NDArray[np.float32]:
     """Return the answers (n, actions) to windows (n, 2) of a stream."""
     encoded, of_fold = EncodedStream(model, stream), folds.of(stream, windows)
-    answers = np.zeros((len(windows), len(heads.all.offsets)), np.float32)
+    answers = np.zeros((len(windows), len(heads.without[0].offsets)), np.float32)
     for fold in np.unique(of_fold):
         in_fold = np.flatnonzero(of_fold == fold)
         for chunk in np.array_split(in_fold, -(-len(in_fold) // CHUNK)):

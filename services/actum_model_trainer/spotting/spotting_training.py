@@ -51,10 +51,13 @@ def with_spotting(
     if not any(each.completeness.any() for each in windows):
         return model
     folds = Folds(usable, search.folds)
-    first = trained_heads(model, usable, windows, folds, preset, rng, progress)
+    few = min(search.most_windows, sum(len(each.frames) for each in windows))
+    unvaried = replace(preset, spotting=replace(search, most_windows=few))
+    first = trained_heads(model, usable, windows, folds, unvaried, rng, progress)
     coarse = untuned.model_copy(update={"interval_s": COARSE * search.interval_s})
     answered = _mixed(scanned(model, usable, first, folds, coarse, progress), search.common_shares[0])
-    alarms = false_alarms(answered, SpottingModel(first.all, untuned), model.labels, search.false_alarm_threshold)
+    searching = SpottingModel(first.without[0], untuned)
+    alarms = false_alarms(answered, searching, model.labels, search.false_alarm_threshold)
     windows = [with_false_alarms(*each, rng) for each in zip(usable, windows, alarms, strict=True)]
     heads = trained_heads(model, usable, windows, folds, preset, rng, progress)
     answered = scanned(model, usable, heads, folds, untuned, progress)
