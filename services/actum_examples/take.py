@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from actum import keys
 from actum.codec import encodable
-from actum.messages import NONE, Segment
+from actum.messages import Segment, is_action
 from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_examples.marked_segment import MarkedSegment, marked_segments
@@ -80,7 +80,7 @@ class Take:
     @property
     def labels(self) -> list[str]:
         """The action of each example that shows one."""
-        return [each.label for each in self.examples if each.label not in (None, NONE)]
+        return [each.label for each in self.examples if is_action(each.label)]
 
     @property
     def background_s(self) -> float:

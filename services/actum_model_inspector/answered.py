@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from actum.arrays import Array
+from actum.messages import is_action
 from actum.recording import Recording
 from actum_model_inspector.text_layout import shortened
 from actum_model_trainer.progress import Progress, silent
@@ -77,7 +78,8 @@ def encoded(model: Model, frames: Sequence[Frame]) -> list[Frame]:
 
 def _answered(model: Model, recording: Recording, closed: ClosedSegment) -> AnsweredSegment:
     valid = [frame for frame in closed.frames if frame.valid]
-    unanswered = AnsweredSegment(str(recording.path), recording.person, closed.segment_id, closed.label, valid)
+    label = closed.label if is_action(closed.label) else None
+    unanswered = AnsweredSegment(str(recording.path), recording.person, closed.segment_id, label, valid)
     if closed.reason or len(valid) < model.min_frames:
         return unanswered
     frames, maps = encoded(model, valid), maps_of(model)

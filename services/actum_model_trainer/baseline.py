@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from actum import keys
 from actum.arrays import Array
-from actum.messages import Agent, Skeleton
+from actum.messages import Agent, Skeleton, is_action
 from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_model_trainer.evaluation import Evaluation, Prediction
@@ -68,7 +68,7 @@ def hand_paths(recordings: Sequence[Recording]) -> Iterator[HandPath]:
             skeletons = [m for m in recording.messages((keys.SKELETON,)) if isinstance(m, Skeleton)]
             of_sensor = [skeleton for skeleton in skeletons if skeleton.sensor == sensor]
             for closed in closed_segments(classifier_input(recording, sensor)):
-                if closed.label is not None:
+                if is_action(closed.label):
                     yield HandPath(str(recording.path), closed.segment_id, closed.label, _path(of_sensor, closed))
 
 

@@ -8,7 +8,7 @@ from math import sqrt
 from typing import Any
 
 from actum import keys
-from actum.messages import Action, Segment
+from actum.messages import Action, Segment, is_action
 from actum.node import replay
 from actum.recording import Recording
 from actum_model_trainer.calibration_error import MIN_ANSWERS, calibration_error, confidence_bins
@@ -187,10 +187,10 @@ def prediction(
 
 
 def segment_labels(recording: Recording, sensor: str) -> dict[str, str]:
-    """Return the label of each labelled segment by its id; of several start marks of one id the first counts."""
+    """Return the action of each labelled segment by its id; of several start marks of one id the first counts."""
     labels: dict[str, str] = {}
     for mark in recording.messages((keys.SEGMENT,)):
-        if isinstance(mark, Segment) and mark.sensor == sensor and mark.kind == "start" and mark.label is not None:
+        if isinstance(mark, Segment) and mark.sensor == sensor and mark.kind == "start" and is_action(mark.label):
             labels.setdefault(mark.segment_id, mark.label)
     return labels
 

@@ -1,20 +1,23 @@
 """The command that makes an example, or a counterexample, of what the classifier found."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from actum.commands import Command, Refusal
 from actum.limits import MAX_SEGMENT_NS
 from actum.messages import MANUAL, NONE, Skeleton, segment_marks
 from actum.node import SECOND_NS
+from actum.recorder import Recorder
 from actum_examples.marking import Marking, finish_take
+from actum_examples.take import Take
+from actum_model_trainer.background import FEWEST_FRAMES
 from model_trainer.changes import Changes, on_disk
 from model_trainer.recent_frames import LONGEST_S, RecentFrames
 from model_trainer.replies import TakeReply
 from model_trainer.requests import Correct
 from model_trainer.set_store import SetStore
 
-FEWEST_FRAMES = 5
-"""Frames of a correction: fewer show no movement."""
 NAME = "corrected-1"
 """The segment of a correction, in its take of its own."""
 
@@ -54,10 +57,34 @@ class CorrectionCommands:
         first, last = frames[0], frames[-1]
         label = request.label or NONE
         marks = segment_marks(first.stamp_ns, last.stamp_ns, first.sensor, NAME, label, request.agent, origin=MANUAL)
-        with on_disk():
-            recorder = self._sets.recorder(request.person, "action")
+        self._refuse_again(request, (first.stamp_ns, last.stamp_ns))
+        with on_disk(), closing_on_error(self._sets.recorder(request.person, "action")) as recorder:
             for frame in frames:
                 recorder.write(frame)
             take = self._sets.add(request.set, finish_take(recorder, Marking(marks)))
         self._changes.revision += 1
         return TakeReply(take=take.id, examples=len(take.examples), doubts=[])
+
+    def _refuse_again(self, request: Correct, bounds_ns: tuple[int, int]) -> None:
+        for take in self._sets.get(request.set).takes:
+            for each in take.examples if is_correction(take) else []:
+                if (each.agent, each.bounds_ns) == (request.agent, bounds_ns):
+                    raise Refusal(
+                        f"this event is already in the set {request.set} as {each.label!r}: delete that example on the "
+                        "panel 'Teach' first"
+                    )
+
+
+def is_correction(take: Take) -> bool:
+    """Tell whether a take was made by a correction."""
+    return any(each.segment_id == NAME for each in take.examples)
+
+
+@contextmanager
+def closing_on_error(recorder: Recorder) -> Iterator[Recorder]:
+    """Return a context that discards what was recorded where an error ends it."""
+    try:
+        yield recorder
+    except BaseException:
+        recorder.discard()
+        raise

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from actum.messages import NONE
 from actum_model_trainer.continuous.detections import Detection, Found, Truth
 from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample
 
@@ -82,7 +83,10 @@ def _by_people(samples: Samples) -> list[Fold]:
 
 
 def _by_examples(samples: Samples) -> list[Fold]:
-    """Deal the examples of each action to the folds in turn, with the time about each up to halfway to the next."""
+    """Deal the examples of each action to the folds in turn, with the time about each up to halfway to the next.
+
+    Counterexamples are dealt as if none were an action.
+    """
     dealt: Counter[str] = Counter()
     spans: list[defaultdict[str, list[Span]]] = [defaultdict(list) for _ in range(FOLDS)]
     of_file: defaultdict[str, list[SegmentSample]] = defaultdict(list)
@@ -93,7 +97,10 @@ def _by_examples(samples: Samples) -> list[Fold]:
         for sample, span in zip(own, _territories(own), strict=True):
             spans[dealt[sample.label] % FOLDS][file].append(span)
             dealt[sample.label] += 1
-        if not own:
+        if all(stream.is_counterexample for stream in samples.streams if stream.file == file):
+            spans[dealt[NONE] % FOLDS][file].append(EVER)
+            dealt[NONE] += 1
+        elif not own:
             for number, span in enumerate(_shares(file, samples.streams)):
                 spans[number][file].append(span)
     return [Fold(f"fold {number} of {FOLDS}", dict(each)) for number, each in enumerate(spans, start=1) if each]

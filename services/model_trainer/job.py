@@ -17,6 +17,7 @@ from pydantic import BaseModel
 
 from actum.commands import Refusal
 from actum.installing import adding
+from actum.messages import is_action
 from actum.recording import Recording, RecordingError
 from actum.runtime.stopping import end_with_parent
 from actum_examples.take import read_take
@@ -146,9 +147,9 @@ def _contents(arguments: Arguments, model: Model | None) -> Contents:
     background_s = sum(take.background_s for take in takes)
     return Contents(
         dict(sorted(Counter(label for take in takes for label in take.labels).items())),
-        frozenset(take.person for take in takes if take.examples),
+        frozenset(take.person for take in takes if take.labels),
         background_s if model is None else model.background_s or 0.0,
-        Counter(each.label for take in takes for each in take.examples if each.doubts and each.label),
+        Counter(each.label for take in takes for each in take.examples if each.doubts and is_action(each.label)),
     )
 
 

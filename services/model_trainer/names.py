@@ -15,7 +15,8 @@ LONGEST_BYTES = 200
 
 LEARNED = "the model would report it whenever people do nothing in particular"
 ANSWERED = "the system reports it when it recognises no action"
-NO_ACTIONS = {"background": LEARNED, "idle": LEARNED, "none": ANSWERED, "unknown": ANSWERED}
+DENIED = "it labels what looks like an action and is none"
+NO_ACTIONS = {"background": LEARNED, "idle": LEARNED, "none": DENIED, "unknown": ANSWERED}
 """Names that no action is given, and why."""
 
 

@@ -17,6 +17,7 @@ from actum_examples.marking import finish_take
 from actum_examples.take import OF_THE_TAKE, Take
 from actum_examples.take_in_progress import TakeInProgress
 from model_trainer.changes import Changes
+from model_trainer.correction_commands import is_correction
 from model_trainer.replies import Done, TakeReply
 from model_trainer.requests import OfSet, Record
 from model_trainer.set_store import SetStore, take_number
@@ -105,11 +106,11 @@ class TakeCommands:
     def _redo_last(self, request: OfSet) -> TakeReply:
         """Record the newest take of a set anew; the old one goes once the new one is there."""
         self._refuse_recording()
-        takes = [take for take in self._sets.get(request.set).takes if take.labels]
+        takes = [take for take in self._sets.get(request.set).takes if take.labels and not is_correction(take)]
         if not takes:
             raise Refusal(f"the set {request.set} has no recording of an action to repeat: record an action first")
         newest = max(takes, key=lambda take: (take_number(take.id), take.created, take.id))
-        label, count = newest.labels[-1], min(len(newest.examples), MOST_REPETITIONS)
+        label, count = newest.labels[-1], min(len(newest.labels), MOST_REPETITIONS)
         try:
             anew = Record(set=request.set, label=label, person=newest.person, count=count)
         except ValidationError as error:

@@ -40,7 +40,7 @@ def test_a_counterexample_is_the_frames_of_its_segment_and_no_others() -> None:
 def test_only_what_shows_nothing_else_is_a_counterexample() -> None:
     stream = taught().streams[0]
     labelled = tuple((start_ns, end_ns, NONE) for start_ns, end_ns, _ in stream.segments)
-    assert not stream.is_counterexample and not replace(stream, segments=labelled).is_counterexample
+    assert not stream.is_counterexample and not replace(stream, segments=labelled[:2]).is_counterexample
     assert all(clip.is_counterexample for clip in clips())
 
 

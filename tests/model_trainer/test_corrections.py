@@ -9,12 +9,18 @@ from actum.codec import encode
 from actum.commands import Refusal
 from actum.messages import NONE, Skeleton
 from actum.node import SECOND_NS
+from actum.recorder import Recorder
 from actum.recording import Recording
+from actum_model_trainer.baseline import hand_paths
+from actum_model_trainer.continuous.watching import found_by
+from actum_model_trainer.evaluation import segment_labels
 from actum_model_trainer.samples import samples_from
 from model_trainer import recent_frames
+from model_trainer.folds import folds_of
 from model_trainer.recent_frames import SLACK_NS, RecentFrames
 from repeating import FRAME_NS, Stream
 from teaching import WAVES, Teacher
+from unmarked import spotting_model
 
 
 @pytest.fixture
@@ -77,12 +83,50 @@ def test_a_set_that_is_not_there_is_refused_before_anything_is_written(teacher: 
     assert not list((teacher.folder / "sets").rglob("*.mcap"))
 
 
-def test_the_last_take_is_redone_though_events_were_corrected_after_it(teacher: Teacher) -> None:
+@pytest.mark.parametrize("really", ["", "lift"])
+def test_the_last_take_is_redone_though_events_were_corrected_after_it(teacher: Teacher, really: str) -> None:
     teacher.teach("wave", WAVES)
-    teacher.ask("correct", **event(start_ns=teacher.examples()[0]["start_ns"], end_ns=teacher.examples()[0]["end_ns"]))
+    teacher.ask("correct", **event(label=really))
     teacher.ask("redo_last", set="kitchen")
-    assert teacher.tick().recording.label == "wave"
+    recording = teacher.tick().recording
+    assert recording is not None and (recording.label, recording.asked) == ("wave", 5)
     teacher.ask("discard")
+
+
+def test_an_event_is_corrected_once(teacher: Teacher) -> None:
+    teacher.ask("correct", **event(label="wave"))
+    for label in ("wave", ""):
+        with pytest.raises(Refusal, match="this event is already in the set kitchen as 'wave'"):
+            teacher.ask("correct", **event(label=label))
+    teacher.ask("correct", **event(start_ns=5 * SECOND_NS, end_ns=7 * SECOND_NS))
+    assert len(teacher.examples()) == 2
+
+
+def test_a_correction_that_cannot_be_stored_leaves_nothing(teacher: Teacher, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Recorder, "write", full)
+    with pytest.raises(Refusal, match="No space left on device; nothing was changed"):
+        teacher.ask("correct", **event())
+    assert not [path for path in (teacher.folder / "sets").rglob("*") if ".mcap" in path.name]
+
+
+def test_what_was_none_is_no_action_for_tests_either(teacher: Teacher) -> None:
+    teacher.teach("wave", WAVES)
+    recording = take_of(teacher, teacher.ask("correct", **event())["take"])
+    assert segment_labels(recording, "kinect0") == {}
+    assert list(hand_paths([recording])) == []
+    assert found_by(spotting_model(), [recording]).truths == ()
+
+
+def test_a_counterexample_is_left_out_whole_or_not_at_all(teacher: Teacher) -> None:
+    teacher.teach("wave", WAVES)
+    recordings = [take_of(teacher, "take-0001"), take_of(teacher, teacher.ask("correct", **event())["take"])]
+    samples = samples_from(recordings)
+    [clip] = [stream for stream in samples.streams if stream.is_counterexample]
+    kept = [len(fold.without(clip).stamps_ns) for fold in folds_of(samples)[1]]
+    assert sorted(kept) == [0, len(clip.stamps_ns), len(clip.stamps_ns)]
 
 
 def frames(count: int, first_ns: int = SECOND_NS, session: str = "one") -> list[Skeleton]:

@@ -118,7 +118,7 @@ def test_a_set_is_not_called_as_a_device_of_windows_but_an_action_may_be(teacher
     [
         ("idle", "'idle' cannot be the name of an action, because the model would report it whenever"),
         ("Background", "'Background' cannot be the name of an action"),
-        ("none", "'none' cannot be the name of an action, because the system reports it when it recognises no"),
+        ("none", "'none' cannot be the name of an action, because it labels what looks like an action and is"),
         ("unknown", "'unknown' cannot be the name of an action"),
     ],
 )

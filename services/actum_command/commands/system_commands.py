@@ -76,8 +76,8 @@ def router(
 ) -> None:
     """Run the Zenoh router alone, for services that are started one by one or on several hosts.
 
-    Do not run this command beside 'actum up', which starts its own router. With --credentials, the router uses renewed
-    certificates without a restart.
+    Do not run this command beside 'actum up', which starts its own router. With --credentials, the router restarts
+    itself when its certificate is renewed.
     """
     logging.basicConfig(level="INFO", format="router: %(message)s")
     here = settings()

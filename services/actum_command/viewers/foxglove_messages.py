@@ -63,7 +63,8 @@ class FoxgloveMessages:
         self._people, self._objects = Presence(), Presence()
 
     def of(self, message: Message) -> list[Put]:
-        """Return what is put for one message; nothing for postures, which are skeletons turned, and for status."""
+        """Return what is put for one message; nothing for postures, which are skeletons turned, for status,
+        and for what was held back."""
         return [*self._content(message), *_line(message)]
 
     def _content(self, message: Message) -> Iterator[Put]:

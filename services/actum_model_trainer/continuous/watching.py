@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from actum import keys
-from actum.messages import AUTO, Action, Message, Posture, Segment
+from actum.messages import AUTO, Action, Message, Posture, Segment, is_action
 from actum.node import Node, Tick, replay
 from actum.recording import Recording
 from actum_model_trainer.continuous.detections import Detection, Found, Truth
@@ -104,6 +104,6 @@ def watched(node: Node, recording: Recording, sensor: str, file: str) -> Found:
     truths = [
         Truth(file, each.agent, each.start_ns, each.end_ns, each.label, points_ns.get(each.segment_id))
         for each in watcher.marked.closed
-        if each.label is not None and each.start_ns < each.end_ns
+        if is_action(each.label) and each.start_ns < each.end_ns
     ]
     return Found(detections, truths, watcher.presence.stretches)

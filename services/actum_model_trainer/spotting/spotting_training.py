@@ -41,7 +41,7 @@ def with_spotting(
 ) -> PyramidModel:
     """Return the model with the search, trained on whole streams; as it is where these hold no action or no window.
 
-    Counterexamples are left to the verifier: heads would learn that whoever acts in them never does anything. Few
+    Streams of counterexamples are left to the verifier: heads would learn that who acts there never does anything. Few
     people show little of how sure the search has to be of others: their threshold is averaged with the prior's.
     """
     search, rng = preset.spotting, np.random.default_rng(seed)

@@ -36,6 +36,7 @@ from actum.messages.recognised import (
     Segment,
     Tensor,
     WhyHeldBack,
+    is_action,
     segment_marks,
 )
 from actum.messages.reported import Info, Status, Truth
@@ -100,5 +101,6 @@ __all__ = [
     "Transform",
     "Truth",
     "WhyHeldBack",
+    "is_action",
     "segment_marks",
 ]

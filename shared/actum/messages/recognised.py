@@ -1,6 +1,6 @@
 """Messages about a segment: its marks, the action recognised, the event."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeGuard
 
 from pydantic import AfterValidator, Field, FiniteFloat
 
@@ -47,6 +47,11 @@ CUT = "cut"
 
 NONE = "none"
 """The label of segments that are like an action and are none: models learn from them that they are not."""
+
+
+def is_action(label: str | None) -> TypeGuard[str]:
+    """Tell whether a segment's label names an action."""
+    return label is not None and label != NONE
 
 
 class Segment(Message):

@@ -4,6 +4,7 @@ import { guarded } from "../guarded.js";
 import { link } from "../link.js";
 
 const MOST = 300;          // segments
+const MOST_HELD = 100;     // of these, what was held back: it takes no room from events
 const MOST_EARLY = 900;    // early answers of one segment: half a minute at 30 Hz
 const segments = new Map();
 const callbacks = new Set();
@@ -34,6 +35,8 @@ link.on("action", (action) => {
 link.on("held_back", (held) => {
   const segment = of(`held back ${held.agent} ${held.start_ns}`, held.session_id);
   Object.assign(segment, { held, agent: held.agent, start: held.start_ns, end: held.end_ns });
+  const all = [...segments.values()].filter((each) => each.held);
+  if (all.length > MOST_HELD) segments.delete(all[0].id);
   tell(segment);
 });
 link.on("event", (event) => {
@@ -47,7 +50,7 @@ function of(id, session = "") {
   if (session && (segments.get(id)?.session || session) !== session) segments.delete(id);
   if (!segments.has(id)) {
     segments.set(id, { id, session, agent: null, start: null, end: null, early: [], action: null, event: null, held: null });
-    if (segments.size > MOST) segments.delete(segments.keys().next().value);
+    if (segments.size > MOST + MOST_HELD) segments.delete(segments.keys().next().value);
   }
   const segment = segments.get(id);
   segment.session ||= session;

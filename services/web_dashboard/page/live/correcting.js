@@ -1,22 +1,28 @@
 // Saying what was really done in an answer, told or held back, and making a model anew that knows it.
 
-import { attempt, button, counted, field, outcome, say } from "../asking.js";
+import { attempt, button, counted, field, outcome, say, suggesting } from "../asking.js";
 import { element } from "../elements.js";
 import { JobView } from "../jobs.js";
 import { trainer } from "../trainer.js";
 
 export class Correcting {
-  constructor() {
-    Object.assign(this, { segment: null, corrected: new Map(), since: 0, job: null });
+  // `held()` is called as somebody turns to the buttons: from then on they have to be those of the same answer.
+  constructor(held) {
+    // corrected: what became of each segment; since: by set, the corrections that its model does not know yet.
+    Object.assign(this, { segment: null, corrected: new Map(), since: new Map(), asking: false, job: null });
     this.line = outcome();
+    this.person = suggesting("corrected-person");
     this.other = element("select");
-    this.was = button("", () => this.correct(this.answered));
-    this.choices = element("div", { class: "buttons" }, this.was,
-      button("None of the actions", () => this.correct("")), field("Another action", this.other), button("It was this", () => this.correct(this.other.value)));
+    this.was = button("", () => this.correct(this.answer.action));
+    this.another = element("div", { class: "buttons" }, field("Another action", this.other), button("It was this", () => this.correct(this.other.value)));
+    this.choices = element("div", {}, field("Person", this.person.input), this.person.list,
+      element("div", { class: "buttons" }, this.was, button("None of the actions", () => this.correct(""))), this.another);
     this.update = button("Update the model", () => this.train(), { kind: "primary" });
     this.training = new JobView(["train"], (job) => this.ended(job));
-    this.element = element("div", { class: "correcting", hidden: true }, element("h3", {}, "What was it really?"), this.choices, this.line, this.update, this.training.element);
+    this.element = element("div", { class: "correcting", hidden: true, on: { pointerenter: held, focusin: held } },
+      element("h3", {}, "What was it really?"), this.choices, this.line, this.update, this.training.element);
     trainer.on(() => this.look());
+    trainer.onChoice(() => (this.person.input.value = ""));
   }
 
   // The set that the model in use was trained on, while the trainer has it; else there is nothing to correct in.
@@ -24,9 +30,8 @@ export class Correcting {
     return trainer.all?.sets.find(({ name }) => name === trainer.now?.model_set) ?? null;
   }
 
-  get answered() {
-    const { held, event, action } = this.segment;
-    return (held ?? event ?? action).action;
+  get answer() {
+    return this.segment && (this.segment.held ?? this.segment.event ?? this.segment.action);
   }
 
   show(segment) {
@@ -36,43 +41,56 @@ export class Correcting {
   }
 
   look() {
-    const { segment, set } = this;
-    const answer = segment && (segment.held ?? segment.event ?? segment.action);
-    this.element.hidden = !set || !answer?.agent || !answer.end_ns;
+    const { answer, set } = this;
+    this.element.hidden = !set || !answer?.agent || !answer.end_ns || answer.why === "unanswerable";
     if (this.element.hidden) return;
     const labels = Object.keys(set.actions);
-    this.choices.hidden = this.corrected.has(segment.id);
+    this.choices.hidden = this.corrected.has(this.segment.id);
+    for (const each of this.choices.querySelectorAll("button")) each.disabled = this.asking;
     this.was.hidden = !labels.includes(answer.action);
     this.was.textContent = `It was ${answer.action}`;
+    this.another.hidden = !labels.length;
     if (labels.join("/") !== this.other.dataset.labels) {
       this.other.dataset.labels = labels.join("/");
       this.other.replaceChildren(...labels.map((label) => element("option", { value: label }, label)));
     }
-    this.training.element.hidden = !this.job || this.job !== trainer.now?.job?.id;
-    this.update.hidden = !this.since || trainer.now?.job?.state === "running";
-    this.update.textContent = `Update the model (${counted(this.since, "correction")})`;
+    this.person.suggest(set.people);
+    if (set.people.length === 1) this.person.input.value ||= set.people[0];
+    const since = this.since.get(set.name) ?? 0;
+    this.training.element.hidden = !this.job || this.job.id !== trainer.now?.job?.id;
+    this.update.hidden = !since || trainer.now?.job?.state === "running";
+    this.update.textContent = `Update the model (${counted(since, "correction")})`;
   }
 
   async correct(label) {
     const { segment, set } = this;
-    const given = { set: set.name, agent: segment.agent, start_ns: segment.start, end_ns: segment.end, label };
-    const done = `Kept in the set ${set.name} as ${label ? `an example of ${label}` : "none of the actions"}.`;
-    if (!(await attempt(this.line, () => trainer.ask("correct", given), done))) return;
-    this.corrected.set(segment.id, done);
-    this.since += 1;
+    const given = { set: set.name, agent: segment.agent, start_ns: segment.start, end_ns: segment.end, label, person: this.person.input.value };
+    this.asking = true;
+    this.look();
+    const reply = await attempt(this.line, () => trainer.ask("correct", given));
+    this.asking = false;
+    if (reply) {
+      this.corrected.set(segment.id, `Kept in the set ${set.name} as ${label ? `an example of ${label}` : "none of the actions"}.`);
+      this.since.set(set.name, (this.since.get(set.name) ?? 0) + 1);
+      if (this.segment === segment) say(this.line, this.corrected.get(segment.id));
+    }
     this.look();
   }
 
   async train() {
-    const job = await this.training.start("train", { set: this.set.name });
-    if (!job) return;
-    Object.assign(this, { job: job.id, since: 0 });
+    const set = this.set.name;
+    const known = this.since.get(set);
+    const job = await this.training.start("train", { set });
+    if (job) this.job = { id: job.id, set, known };
     this.look();
   }
 
   // Puts the model into use that was trained here; other panels train models, too.
   async ended({ id, result }) {
-    if (id !== this.job || !result) return;
+    if (id !== this.job?.id || !result) return;
+    const { set, known } = this.job;
+    this.since.set(set, this.since.get(set) - known);
     await attempt(this.line, () => trainer.ask("activate", { model: result.model }), "The new model is in use within two seconds.");
+    this.look();
   }
 }

@@ -12,13 +12,14 @@ let chosen = null;
 export function explanation() {
   const newer = element("button", { type: "button", class: "small", hidden: true, on: { click: () => follow() } }, "Show the newest answer");
   const body = element("div", { class: "explained", "aria-live": "off" }, element("p", { class: "caption" }, "Shows the reasons for the newest answer, or for the one that you press in the timeline."));
-  const correcting = new Correcting();
+  const correcting = new Correcting(() => hold());
   view = { newer, body, correcting };
   return card("explanation", "Reasons for an answer", { controls: [newer] }, body, correcting.element);
 }
 
 // Explains one segment's answer until another is chosen.
 export function explain(id) {
+  if (!segmentOf(id)) return;
   chosen = id;
   view.newer.hidden = false;
   show(segmentOf(id));
@@ -27,6 +28,11 @@ export function explain(id) {
 
 export function newest(segment) {
   if (chosen === null || chosen === segment.id) show(segment);
+}
+
+function hold() {
+  chosen ??= view.correcting.segment?.id ?? null;
+  view.newer.hidden = chosen === null;
 }
 
 function follow() {
