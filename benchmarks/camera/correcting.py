@@ -8,11 +8,13 @@ import platform
 import tempfile
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from actum import keys
+from actum.commands import Refusal
 from actum.messages import Action, HeldBack, Message, Segment
 from actum.node import Tick, replay
 from actum.recording import Recording
@@ -41,7 +43,8 @@ HEADER = """# Corrected by clicks
 [continuous.md](continuous.md), through the page's trainer and its real jobs. Two others and a person who exercises are
 watched, unmarked. The first ten events that were told wrongly, or held back wrongly, are corrected as by clicks on the
 page, as what was done or as none of the actions; then the model is trained anew, and the same videos are watched again.
-How corrections are learnt was decided with a look at these people."""
+An event of fewer than eight frames is refused, and counts as not right. How corrections are
+learnt was decided with a look at these people."""
 Done = tuple[int, int, str]
 """Start, end (ns) and label of what was done."""
 SET = "corrected"
@@ -105,7 +108,8 @@ class Teaching:
         began_s = time.monotonic()
         for each in wrong:
             span = {"start_ns": each.answer.start_ns, "end_ns": each.answer.end_ns, "agent": each.answer.agent}
-            self.ask("correct", set=SET, label=each.really, **span)
+            with suppress(Refusal):  # too few frames to learn from
+                self.ask("correct", set=SET, label=each.really, **span)
         return time.monotonic() - began_s
 
     def model(self) -> Model:

@@ -30,6 +30,8 @@ from som_classifier.spotting.spotting_preset import SpottingPreset
 
 COARSE = 2
 """Intervals between two looks for false alarms to learn from: they last longer, and looking takes most of the time."""
+FIRST_VARIANTS = 2
+"""Variants of each window that the first heads learn from: they only look for false alarms; n windows cost n³."""
 SHORTEST_S = 0.2
 """Shortest window (s): a shorter movement is a twitch."""
 MIN_LOG_DURATION_SD = 0.15
@@ -51,9 +53,9 @@ def with_spotting(
     if not any(each.completeness.any() for each in windows):
         return model
     folds = Folds(usable, search.folds)
-    few = min(search.most_windows, sum(len(each.frames) for each in windows))
-    unvaried = replace(preset, spotting=replace(search, most_windows=few))
-    first = trained_heads(model, usable, windows, folds, unvaried, rng, progress)
+    few = min(search.most_windows, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
+    less_varied = replace(preset, spotting=replace(search, most_windows=few))
+    first = trained_heads(model, usable, windows, folds, less_varied, rng, progress)
     coarse = untuned.model_copy(update={"interval_s": COARSE * search.interval_s})
     answered = _mixed(scanned(model, usable, first, folds, coarse, progress), search.common_shares[0])
     searching = SpottingModel(first.without[0], untuned)
