@@ -38,6 +38,7 @@ RESULTS = {
     "Cuts": "benchmarks/cutting",
     "Webcam": "benchmarks/camera/results",
     "Webcam, found live": "benchmarks/camera/continuous",
+    "Webcam, corrected": "benchmarks/camera/correcting",
     "Webcam: what was tried": "benchmarks/camera/README",
     "The paper": "benchmarks/paper/results",
     "The paper: what was tried": "benchmarks/paper/README",

@@ -20,6 +20,7 @@ from .methods import COST_OF_A_SECOND, INNER_FOLDS
 from .never_trained import never_trained
 from .scene import scene
 from .sensitivity import sensitivity
+from .strangers import strangers
 from .streams import FOLDS, ContinuousSets, folds
 
 PAGE = Path(__file__).with_name("results.md")
@@ -64,6 +65,7 @@ PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
     "never-trained": ("Actions that were never trained", never_trained),
     "scene": ("The simulated scene, new people", scene),
     "idle": ("An hour without an action", idle),
+    "strangers": ("Other people's movement", strangers),
     "early": ("Partial answers", early),
     "cost": ("Four people at once", cost),
 }

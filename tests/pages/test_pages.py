@@ -25,7 +25,7 @@ OURS = "|".join(sorted(file.parent.name for file in ROOT.glob("*/*/__init__.py")
 FOLDERS = "shared|services|tests|docs|benchmarks|deploy|examples"
 MOST_WORDS = 1300
 MOST_WORDS_OF_A_PAGE = 2500
-PRINTED = ("results.md", "bimacs.md", "cutting.md", "continuous.md", "som.md")
+PRINTED = ("results.md", "bimacs.md", "cutting.md", "continuous.md", "correcting.md", "som.md")
 """Pages that a benchmark prints, tables above all."""
 
 every_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
