@@ -58,7 +58,7 @@ class CorrectionCommands:
         label = request.label or NONE
         marks = segment_marks(first.stamp_ns, last.stamp_ns, first.sensor, NAME, label, request.agent, origin=MANUAL)
         self._refuse_again(request, (first.stamp_ns, last.stamp_ns))
-        with on_disk(), closing_on_error(self._sets.recorder(request.person, "action")) as recorder:
+        with on_disk(), discarding_on_error(self._sets.recorder(request.person, "action")) as recorder:
             for frame in frames:
                 recorder.write(frame)
             take = self._sets.add(request.set, finish_take(recorder, Marking(marks)))
@@ -81,7 +81,7 @@ def is_correction(take: Take) -> bool:
 
 
 @contextmanager
-def closing_on_error(recorder: Recorder) -> Iterator[Recorder]:
+def discarding_on_error(recorder: Recorder) -> Iterator[Recorder]:
     """Return a context that discards what was recorded where an error ends it."""
     try:
         yield recorder

@@ -36,7 +36,7 @@ def watch(
     ] = False,
     with_held_back: Annotated[
         bool,
-        typer.Option("--held-back", help="also print what was found but not told, with the reason"),
+        typer.Option("--held-back", help="also print segments that were found but not published, with the reason"),
     ] = False,
     recorded: Annotated[
         list[Path] | None,

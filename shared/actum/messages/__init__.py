@@ -18,13 +18,18 @@ from actum.messages.base import (
     Point,
     Transform,
 )
-from actum.messages.recognised import (
+from actum.messages.marked import (
     AUTO,
     CUT,
     MANUAL,
     NONE,
     REPLAY,
     SIMULATOR,
+    Segment,
+    is_action,
+    segment_marks,
+)
+from actum.messages.recognised import (
     ActedObject,
     Action,
     Event,
@@ -33,11 +38,8 @@ from actum.messages.recognised import (
     Motion,
     ObjectPose,
     Pointing,
-    Segment,
     Tensor,
     WhyHeldBack,
-    is_action,
-    segment_marks,
 )
 from actum.messages.reported import Info, Status, Truth
 from actum.messages.seen import Agent, Image, Objects, Posture, Skeleton, TrackedObject

@@ -9,7 +9,7 @@ export class Correcting {
   // `held()` is called as somebody turns to the buttons: from then on they have to be those of the same answer.
   constructor(held) {
     // corrected: what became of each segment; since: by set, the corrections that its model does not know yet.
-    Object.assign(this, { segment: null, corrected: new Map(), since: new Map(), asking: false, job: null });
+    Object.assign(this, { segment: null, corrected: new Map(), since: new Map(), asking: false, job: null, filled: null });
     this.line = outcome();
     this.person = suggesting("corrected-person");
     this.other = element("select");
@@ -22,7 +22,6 @@ export class Correcting {
     this.element = element("div", { class: "correcting", hidden: true, on: { pointerenter: held, focusin: held } },
       element("h3", {}, "What was it really?"), this.choices, this.line, this.update, this.training.element);
     trainer.on(() => this.look());
-    trainer.onChoice(() => (this.person.input.value = ""));
   }
 
   // The set that the model in use was trained on, while the trainer has it; else there is nothing to correct in.
@@ -54,12 +53,19 @@ export class Correcting {
       this.other.dataset.labels = labels.join("/");
       this.other.replaceChildren(...labels.map((label) => element("option", { value: label }, label)));
     }
-    this.person.suggest(set.people);
-    if (set.people.length === 1) this.person.input.value ||= set.people[0];
+    this.fillIn(set);
     const since = this.since.get(set.name) ?? 0;
     this.training.element.hidden = !this.job || this.job.id !== trainer.now?.job?.id;
     this.update.hidden = !since || trainer.now?.job?.state === "running";
     this.update.textContent = `Update the model (${counted(since, "correction")})`;
+  }
+
+  // Suggests who it may be; fills the only person in once for each set, so that it can be cleared.
+  fillIn({ name, people }) {
+    this.person.suggest(people);
+    if (this.filled === name) return;
+    this.filled = name;
+    this.person.input.value = people.length === 1 ? people[0] : "";
   }
 
   async correct(label) {
