@@ -127,7 +127,7 @@ class Settings(ServiceSettings):
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
             "the result that each action is expected to have on its object, such as lift=lifted,push=pushed. An object "
-            "held during one of these actions counts as the object of the action, not as a tool"
+            "held during an action listed here is the object of the action, not a tool used on another object"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(

@@ -176,7 +176,10 @@ def _bodies(rows: Sequence[Row]) -> dict[int, str]:
 def _check_targets(labels: Sequence[Label], bodies: Mapping[int, str]) -> None:
     for label in labels:
         if label.target is not None and label.target not in bodies:
-            raise ValueError(f"the labels name the object {OBJECTS[label.target]}, but the file has no columns for it")
+            raise ValueError(
+                f"the labels name the object {OBJECTS[label.target]}, but the file of positions has no columns for it: "
+                "download both again"
+            )
 
 
 def _objects(rows: Sequence[Row], stamps_ns: Sequence[int], sensor: str, session_id: str) -> list[Objects]:

@@ -214,7 +214,9 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
         raise SettingsError(f"sensors: {sensors!r}: give {len(cameras)} different sensor names, one per camera")
     places = [_normal(host.endpoint) for host in hosts]
     if len({*places}) < len(places):
-        raise SettingsError(f"hosts: {text!r}: two hosts have the same address and port: change one of the two hosts")
+        raise SettingsError(
+            f"hosts: {text!r}: two hosts have the same address and port: give one of them another address or port"
+        )
     if len(computing) > len(named):
         raise SettingsError(
             f"hosts: {len(computing)} compute hosts are too many for {len(named)} cameras: give at most one compute "

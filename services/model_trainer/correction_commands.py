@@ -43,16 +43,16 @@ class CorrectionCommands:
         """Add an event of the last ten minutes to a set: as an example of an action, or as none of the actions."""
         if not 0 < request.end_ns - request.start_ns <= MAX_SEGMENT_NS:
             raise Refusal(
-                f"the event has to end after it starts, by at most {MAX_SEGMENT_NS // SECOND_NS} s: use the start_ns "
-                "and end_ns of an event or of a held_back message"
+                f"the event has to end after it starts and last at most {MAX_SEGMENT_NS // SECOND_NS} s: use the "
+                "start_ns and end_ns of an event or of a held_back message"
             )
         self._sets.folder(request.set)
         frames = list(self._recent.of(request.agent, request.start_ns, request.end_ns))
         if len(frames) < FEWEST_FRAMES:
             raise Refusal(
-                f"{len(frames)} frames of person {request.agent} are left of this event, at least {FEWEST_FRAMES} are "
-                f"needed: correct an event within {LONGEST_S / 60:.0f} minutes, before the sensor or the trainer "
-                "restarts"
+                f"only {len(frames)} frames of person {request.agent} in this event are still stored, {FEWEST_FRAMES} "
+                f"are needed: correct an event at most {LONGEST_S / 60:.0f} minutes after it, before the sensor or the "
+                "trainer restarts"
             )
         first, last = frames[0], frames[-1]
         label = request.label or NONE

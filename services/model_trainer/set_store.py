@@ -200,7 +200,7 @@ class SetStore:
         if path.exists() and not path.is_file():
             raise RecordingError(
                 path,
-                "a folder or a device has this name, which only a recording file may have",
+                "a folder or a device stands where a recording file must be",
                 "move the folder or device out of the folder of the set",
             )
         stat = path.stat()

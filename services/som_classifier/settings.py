@@ -81,10 +81,10 @@ class Settings(ServiceSettings):
     cooldown_s: Annotated[dict[str, Seconds], NoDecode, BeforeValidator(_pairs)] = Field(
         {},
         description=(
-            "a number of seconds for each action, such as wave=3,clap=1: after the classifier has published an action, "
-            "it does not publish the same action again if that starts less than this many seconds after the end of the "
-            "published one. This does not affect actions whose start and end are marked by another program. Default: 0 "
-            "for all actions"
+            "the shortest pause after an action before the same action counts again, in seconds for each action. With "
+            "wave=3,clap=1, a wave that starts less than 3 s after the end of the last published wave is not "
+            "published. This does not affect actions whose start and end are marked by another program. Default: 0 for "
+            "all actions"
         ),
     )
     enabled_actions: Names = Field(

@@ -162,7 +162,8 @@ class _Chunks:
         data = _decompressed(chunk)
         if len(data) != size:
             raise ValueError(
-                f"a compressed block in the file should decompress to {size} bytes, but decompresses to another size"
+                f"a compressed block in the file should decompress to {size} bytes, but decompresses to another size: "
+                "the file is damaged"
             )
         return breakup_chunk(replace(chunk, compression="", data=data), validate_crc=True)
 

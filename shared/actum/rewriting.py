@@ -66,7 +66,7 @@ def finish(path: Path) -> int:
     with part.open("r+b") as claimed:  # to write, or a network file system gives no lock
         if not claim(claimed) or not os.path.samestat(os.fstat(claimed.fileno()), part.stat()):
             raise TakenError(
-                part, f"{part} is being written by another process: wait until this process ends, or stop the process"
+                part, f"{part} is being written by another process: wait until that process ends, or stop it"
             )
         if os.path.lexists(path):
             raise TakenError(

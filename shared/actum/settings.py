@@ -136,7 +136,7 @@ class ServiceSettings(BaseSettings):
         None,
         description=(
             "the folder with the certificate and key of this program, as written by `actum deploy`, such as "
-            "people/viewer; needs --connect tls/host:port"
+            "people/viewer for the programs of a person who only watches; needs --connect tls/host:port"
         ),
     )
     state: Path | None = Field(

@@ -108,9 +108,9 @@ def move(
 
 @app.command("delete")
 def delete(file: RecordingFile, name: SegmentName) -> None:
-    """Delete a segment: its start and end marks, the classifier's answers to it, and the frames of the person who acts.
+    """Delete a segment: its start and end marks, the classifier's answers to it, and the person's frames between them.
 
-    The frames stay if the segment has no label, or if another labelled segment of that person needs the same frames.
+    These frames stay if the segment has no label, or if another labelled segment of the same person contains them.
     """
     take, segment = _found(file, name)
     with _editing(file):

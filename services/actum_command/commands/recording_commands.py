@@ -71,7 +71,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
             help=(
                 "whose start and end marks to store: manual (people and other programs), simulator (the simulated "
                 "scene), replay ('actum play') and auto (the classifier), separated by commas, or all. Default: "
-                "manual. --times makes its own marks; it stores others only if this option names them"
+                "manual, but none with --times, which makes its own marks"
             )
         ),
     ] = None,

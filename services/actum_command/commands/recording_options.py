@@ -29,7 +29,7 @@ AgentOption = Annotated[
     typer.Option(
         min=1,
         help=(
-            "number of the person who acts, which messages contain in the field 'agent'; default: the person nearest "
+            "number of the person who acts, as in the field 'agent' of messages; default: the person nearest "
             "to the camera"
         ),
     ),

@@ -59,8 +59,9 @@ def simulate(
         Pauses,
         typer.Option(
             help=(
-                "what happens between two actions: long (up to three background activities, and rests of seconds) or "
-                "short (at most one background activity, and short rests). Ignored if --everyday is none"
+                "what the simulated person does between two actions. long: up to three background activities, and "
+                "rests of several seconds; short: at most one background activity, and short rests. Ignored if "
+                "--everyday is none"
             )
         ),
     ] = "long",

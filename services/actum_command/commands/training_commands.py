@@ -29,7 +29,7 @@ from actum_model_trainer.evaluation import evaluate
 from actum_model_trainer.report import report
 from actum_model_trainer.samples import LabelledStream, samples_from, select
 from actum_model_trainer.training import TrainingError, train_to_spot
-from som_classifier.attention import ATTENTIONS
+from som_classifier.attention import ATTENTIONS, MOVING
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
@@ -44,15 +44,15 @@ PRESET_HELP = (
     f"{DEFAULT.name} is more accurate"
 )
 SET_HELP = (
-    f"change a setting of --preset {PAPER.name}; may be repeated. Settings: axes=upright (coordinate axes are vertical "
-    "and smoothed over time; default) or axes=posture (axes follow the body, computed anew in each frame); "
+    f"change a setting of --preset {PAPER.name}; may be repeated. Settings: axes=upright (one axis is vertical, the "
+    "others follow the body smoothly; default) or axes=posture (axes follow the body, computed anew in each frame); "
     "origin=torso (positions are measured from the torso; default) or origin=hips; attention=PART, the body part whose "
-    f"joints are used: {', '.join(ATTENTIONS)} (default: moving, which is the part that moves most)"
+    f"joints are used: {', '.join(ATTENTIONS[1:])} or {MOVING} (the part that moves most; default)"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
-    "movement that is none of the actions, so that the model learns what to ignore; may be repeated: shipped (half an "
-    "hour of simulated people, comes with actum; default), none, or recordings (.mcap) or folders of them"
+    "movement that is none of the actions, so that the model learns what to ignore: shipped (half an hour of simulated "
+    "people, comes with actum; default), none, or recordings (.mcap) or folders of them; may be repeated"
 )
 SHIPPED, NONE = "shipped", "none"
 ONLY_LEFT_OUT = "used only with --leave-one-person-out: "
@@ -111,8 +111,8 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         list[Path],
         typer.Argument(
             help=(
-                "the model file to test, then labelled recordings or folders of recordings; with "
-                "--leave-one-person-out no model file"
+                "the model file to test (none with --leave-one-person-out), then labelled recordings or folders "
+                "of recordings"
             )
         ),
     ],

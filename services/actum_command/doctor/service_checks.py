@@ -122,8 +122,8 @@ def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
         case State.SOURCE_ENDED:
             endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
             yield (
-                f"{name}: {status.state}{source}; restart {name} to play the source once more, or with {endless} to "
-                "repeat the source without end"
+                f"{name}: {status.state}{source}; restart {name} to play the source once more, or restart it with "
+                f"{endless} to repeat the source without end"
             )
         case State.NO_MODEL:
             yield f"{name}: {status.state}, so every action is rejected; set --model or ACTUM_MODEL to a model file"

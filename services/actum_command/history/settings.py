@@ -11,16 +11,13 @@ class Settings(ServiceSettings):
     history_file_mb: float = Field(
         16.0,
         gt=0,
-        description=(
-            "only with 'actum record --events': size of a file of the history (MB) at which the file is finished and "
-            "the next file is started"
-        ),
+        description=("history of events: at this size (MB) a file is finished and the next file is started"),
     )
     history_file_hours: float = Field(
         24.0,
         gt=0,
         description=(
-            "only with 'actum record --events': maximum time that one file of the history covers (h); after this time "
+            "history of events: maximum time that one file of the history covers (h); after this time "
             "the next file is started"
         ),
     )
@@ -28,7 +25,7 @@ class Settings(ServiceSettings):
         None,
         ge=1,
         description=(
-            "only with 'actum record --events': maximum number of finished files with events; if there are more, "
+            "history of events: maximum number of finished files with events; if there are more, "
             "the oldest are deleted. Default: all files are kept"
         ),
     )
@@ -36,7 +33,7 @@ class Settings(ServiceSettings):
         None,
         gt=0,
         description=(
-            "only with 'actum record --events': maximum total size of the finished files with events (MB); if the "
+            "history of events: maximum total size of the finished files with events (MB); if the "
             "total is larger, the oldest are deleted. Default: all files are kept"
         ),
     )

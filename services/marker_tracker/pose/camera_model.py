@@ -48,9 +48,9 @@ def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None
     if not all(0 < f < LARGEST_FOCAL_PX for f in focal) or np.abs(matrix).max() > LARGEST_FOCAL_PX:
         raise UnusableImageError(
             "bad_calibration",
-            f"the camera matrix K has the focal lengths {focal[0]:g} and {focal[1]:g} px and {np.abs(matrix).max():g} "
-            f"as its largest entry; focal lengths must be above 0, and no entry above {LARGEST_FOCAL_PX:g}: calibrate "
-            "the camera again",
+            f"the camera matrix K has the focal lengths {focal[0]:g} and {focal[1]:g} px, and its largest entry is "
+            f"{np.abs(matrix).max():g}; focal lengths must be above 0, and no entry above {LARGEST_FOCAL_PX:g}: "
+            "calibrate the camera again",
         )
     if not np.array_equal(matrix[2], (0, 0, 1)):
         raise UnusableImageError(

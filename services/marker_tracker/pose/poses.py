@@ -114,7 +114,9 @@ def solve(markers: Sequence[tuple[Marker, MountedMarker]], camera: CameraModel) 
     poses = [pose for marker, mounted in markers for pose in _from_one(marker, mounted, points_m, corners_px, camera)]
     usable = sorted((pose for pose in poses if _is_usable(pose)), key=lambda pose: pose.error_px)
     if not usable:
-        raise BadPoseError(f"no pose in front of the camera fits the corners of marker {markers[0][0].id}")
+        raise BadPoseError(
+            f"no position in front of the camera fits the corners of marker {markers[0][0].id}: keep the marker flat"
+        )
     best = usable[0]
     possible = (pose for pose in usable[1:] if _is_possible(pose.error_px, best.error_px))
     distinct = (

@@ -29,4 +29,6 @@ class Silence:
             CameraLostError: the last picture is too long ago.
         """
         if self._now_s() - self._heard_s > self._allowed_s:
-            raise CameraLostError(f"the camera sent no picture for {self._allowed_s:g} s")
+            raise CameraLostError(
+                f"the camera sent no picture for {self._allowed_s:g} s: if this repeats, plug it in again"
+            )

@@ -109,7 +109,7 @@ def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
     if indices.ndim != 1 or (indices.size and not np.issubdtype(indices.dtype, np.integer)):
         raise ValueError(
             f"the argument 'order' has type {indices.dtype} and shape {indices.shape}; expected a list of integers: "
-            "the row number of the vector to learn from in each step"
+            "for each step, the row number of the vector to learn from"
         )
     if indices.size and (indices.min() < 0 or indices.max() >= rows):
         raise ValueError(

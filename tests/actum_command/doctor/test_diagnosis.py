@@ -22,7 +22,7 @@ from som_classifier.segmentation import CANNOT, NO_BACKGROUND, Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
 from spotters import finding
 
-AGAIN = "restart sensor_gateway to play the source once more, or with"
+AGAIN = "restart sensor_gateway to play the source once more, or restart it with"
 
 
 def status(service: str, **fields: Any) -> Status:
