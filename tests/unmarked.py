@@ -2,18 +2,19 @@
 
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Posture, Segment, Skeleton
+from actum.messages import NONE, Posture, Segment, Skeleton
 from actum.node import Counters
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_model_trainer.samples import Samples, samples_from
+from actum_model_trainer.background import counterexamples
+from actum_model_trainer.samples import LabelledStream, Samples, samples_from
 from actum_model_trainer.training import train_to_spot
 from people import FRAME_NS, STANDING, skeleton
 from performers import HAND_PATHS, TINY, mark, posed
@@ -106,6 +107,16 @@ def taught() -> Samples:
 
 
 @cache
+def swings_said_to_be_none() -> tuple[LabelledStream, ...]:
+    """Each swing that was taught, on its own and labelled as none of the actions."""
+    named = [
+        replace(stream, segments=tuple((*bounds, NONE) for *bounds, label in stream.segments if label == "swing"))
+        for stream in taught().streams
+    ]
+    return tuple(counterexamples(named))
+
+
+@cache
 def spotting_model() -> PyramidModel:
     """A model that finds lift, push and swing, trained on two people."""
     model: Model = train_to_spot(taught().usable, taught().streams, TINY)
@@ -121,6 +132,18 @@ def postures(skeletons: Iterable[Skeleton]) -> Iterator[Posture]:
 
 def bounds_ns(acts: Sequence[Act], first_ns: int = 0) -> list[tuple[int, int, str]]:
     return [(first_ns + act.first * FRAME_NS, first_ns + act.last * FRAME_NS, act.action) for act in acts]
+
+
+def familiarities(model: Model) -> dict[str, float]:
+    """The mean familiarity of what somebody else does and is recognised, by action."""
+    found: dict[str, list[float]] = {}
+    of = scene(seed=9)
+    frames = encoded_live(model, of)
+    for act in of.acts:
+        recognition = model.recognise(frames[act.first : act.last + 1], complete=True)
+        if recognition.label == act.action:
+            found.setdefault(act.action, []).append(recognition.familiarity or 0.0)
+    return {action: float(np.mean(values)) for action, values in found.items()}
 
 
 def encoded_live(model: Model, of: Scene, lost: frozenset[int] = frozenset()) -> list[Frame]:

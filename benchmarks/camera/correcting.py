@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -35,14 +36,14 @@ from .joined_clips import joined
 PAGE = Path(__file__).with_name("correcting.md")
 COLUMNS = (
     "taught by", "corrected: right afterwards", "other right events: kept", "told rightly", "told wrongly",
-    "training, s", "corrections, s", "training anew, s",
+    "training, s", "corrections, s", "update, s",
 )  # fmt: skip
 HEADER = """# Corrected by clicks
 
 `python -m benchmarks.camera.correcting`: {versions}. One person of Florence 3D Actions teaches by the joined video of
 [continuous.md](continuous.md), through the page's trainer and its real jobs. Two others and a person who exercises are
 watched, unmarked. The first ten events that were told wrongly, or held back wrongly, are corrected as by clicks on the
-page, as what was done or as none of the actions; then the model is trained anew, and the same videos are watched again.
+page, as what was done or as none of the actions; then the model is updated, and the same videos are watched again.
 An event of fewer than eight frames is refused, and counts as not right. How corrections are
 learnt was decided with a look at these people."""
 Done = tuple[int, int, str]
@@ -112,9 +113,9 @@ class Teaching:
                 self.ask("correct", set=SET, label=each.really, **span)
         return time.monotonic() - began_s
 
-    def model(self) -> Model:
-        """Train on the set, put the model into use, and load it as the classifier does."""
-        job = self.ask("train", set=SET)
+    def model(self, update: str | None = None) -> Model:
+        """Train on the set, or update the model of an id; put it into use, and load it as the classifier does."""
+        job = self.ask("train", set=SET, update=update)
         while job["state"] == "running":
             time.sleep(LOOK_S)
             list(self._trainer.handle(Tick(time.monotonic_ns())))
@@ -196,7 +197,7 @@ def corrected(teaching: Recording, videos: Sequence[Recording], folder: Path) ->
     before = {video.path: answers(model, video) for video in videos}
     wrong = [each for video in videos for each in wrong_answers(model, video, before[video.path])][:CORRECTIONS]
     asked_s = sum(trainer.watch(video, [each for each in wrong if each.video is video]) for video in videos)
-    again, again_s = timed(trainer.model)
+    again, again_s = timed(partial(trainer.model, model.id))
     after = {video.path: answers(again, video) for video in videos}
     told = [(video, each) for video in videos for each in rightly_told(video, before[video.path])]
     kept = sum(each in rightly_told(video, after[video.path]) for video, each in told)

@@ -8,13 +8,13 @@ from threadpoolctl import threadpool_limits
 from actum_model_trainer import paper_training, pyramid_training
 from actum_model_trainer.background import counterexamples, shipped
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.provenance import TrainingError
+from actum_model_trainer.provenance import TrainingError, actions_of
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.spotting.spotting_training import with_spotting
 from som_classifier.model import Model
 from som_classifier.presets import Preset
 
-__all__ = ["SEARCHES", "TRAININGS", "TrainingError", "train", "train_to_spot"]
+__all__ = ["SEARCHES", "TRAININGS", "UPDATES", "TrainingError", "train", "train_to_spot", "update"]
 
 
 TRAININGS: dict[str, Callable[[Sequence[SegmentSample], Sequence[LabelledStream], Any, int, Progress], Model]] = {
@@ -24,6 +24,10 @@ TRAININGS: dict[str, Callable[[Sequence[SegmentSample], Sequence[LabelledStream]
 """The training of each kind of model on samples and background, with a preset of that kind and a seed."""
 SEARCHES: dict[str, Callable[[Any, Sequence[LabelledStream], Any, int, Progress], Model]] = {"pyramid": with_spotting}
 """For each kind of model that finds actions without marks: adds the search to a trained model."""
+UPDATES: dict[str, Callable[[Any, Sequence[SegmentSample], Sequence[LabelledStream], Any, int, Progress], Model]] = {
+    "pyramid": pyramid_training.update
+}
+"""For each kind of model whose search can stay as it is: trains what names the segments found."""
 
 
 def train(
@@ -65,3 +69,25 @@ def train_to_spot(
         return model
     with threadpool_limits(1, user_api="blas"):
         return search(model, streams, preset, seed, progress)
+
+
+def update(
+    model: Model,
+    samples: Sequence[SegmentSample],
+    streams: Sequence[LabelledStream],
+    preset: Preset,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> Model:
+    """Train a model on samples that include corrections, so that it finds the same segments as before.
+
+    A model of another kind than the preset's, of a kind that cannot be updated, or of other actions is trained anew.
+
+    Raises:
+        TrainingError: fewer than two actions among the samples.
+    """
+    updating = UPDATES.get(preset.kind)
+    if updating is None or model.metadata.kind != preset.kind or model.labels != actions_of(samples):
+        return train_to_spot(samples, streams, preset, seed, progress)
+    with threadpool_limits(1, user_api="blas"):
+        return updating(model, samples, [*shipped(), *counterexamples(streams)], preset, seed, progress)

@@ -25,10 +25,11 @@ from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import samples_from, select
-from actum_model_trainer.training import TrainingError, train_to_spot
+from actum_model_trainer.training import TrainingError, train_to_spot, update
 from model_trainer.set_evaluation import evaluate_set
 from som_classifier.model import Model
-from som_classifier.presets import PRESETS
+from som_classifier.model_loading import ModelError, load_model
+from som_classifier.presets import DEFAULT, PRESETS
 
 PRINT_S = 0.1
 """Shortest time between two lines of one stage (s): the page shows no more."""
@@ -44,6 +45,7 @@ class Arguments(BaseModel):
     takes: Path = Path()
     preset: str = ""
     seed: int = 0
+    model: Path | None = None
     video: Path = Path()
     label: str = ""
     person: str = ""
@@ -72,9 +74,15 @@ def print_line(**fields: Any) -> None:
 
 
 def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
-    """Train a model on a set; it lies in the folder afterwards."""
+    """Train a model on a set, or update one; it lies in the folder afterwards."""
+    before = None if arguments.model is None else load_model(arguments.model)
     samples = samples_from(select([_snapshot(arguments)]), progress)
-    model = train_to_spot(samples.usable, samples.streams, PRESETS[arguments.preset], arguments.seed, progress)
+    learnt = samples.usable, samples.streams
+    if before is None:
+        model = train_to_spot(*learnt, PRESETS[arguments.preset], arguments.seed, progress)
+    else:
+        preset = PRESETS.get(before.metadata.preset, DEFAULT)
+        model = update(before, *learnt, preset, arguments.seed, progress)
     model.save(arguments.folder / MODEL)
     answers = model.metadata.held_out_answers
     right = sum(done == answered for done, answered in answers)
@@ -123,7 +131,7 @@ def main() -> None:
     }
     try:
         print_line(result=jobs[arguments.kind](arguments, ProgressLines()))
-    except (Refusal, TrainingError, RecordingError, NoSpotterError, OSError) as error:
+    except (Refusal, TrainingError, RecordingError, NoSpotterError, ModelError, OSError) as error:
         print_line(error=str(error))
     except ModuleNotFoundError as error:
         print_line(error=f"{error.name} is not installed: {adding('camera')}")

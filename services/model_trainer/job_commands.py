@@ -112,7 +112,10 @@ class JobCommands:
         """Train a model on a set; 'activate' puts it into use."""
         if request.preset not in PRESETS:
             raise Refusal(f"there is no preset {request.preset!r}: use one of {', '.join(PRESETS)}")
-        return self._start("train", request.set, {"preset": request.preset, "seed": request.seed})
+        fields: dict[str, Any] = {"preset": request.preset, "seed": request.seed}
+        if request.update is not None:
+            fields["model"] = str(self._models.get(request.update).path)
+        return self._start("train", request.set, fields)
 
     def _evaluate(self, request: OfSet) -> Job:
         """Test what a set teaches, leaving out each person or each third in turn; say what to record next."""

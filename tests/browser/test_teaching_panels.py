@@ -352,7 +352,9 @@ def test_what_was_held_back_is_corrected_by_one_click_each_and_the_model_made_an
         says(models, "explanation", f"Kept in the set {SET} as {kept}")
     assert Counter(each["label"] for each in room.teacher.examples(SET)) == {"wave": 6, "goggles": 5, NONE: 1}
     press(models, "Update the model (2 corrections)")
-    wait_until(lambda: len(room.teacher.jobs) == 2, "it is trained anew")
+    wait_until(lambda: len(room.teacher.jobs) == 2, "it is updated")
+    [model] = room.teacher.ask("list")["models"]
+    assert room.teacher.jobs[-1].request.fields["model"].endswith(f"{model['id']}.npz")
     room.end_job(trained())
     says(models, "explanation", "The new model is in use within two seconds.")
 

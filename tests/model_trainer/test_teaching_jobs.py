@@ -9,10 +9,11 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from actum.commands import Refusal
-from actum.node import Counters
+from actum.node import SECOND_NS, Counters
 from actum.recorder import is_being_written
 from live import wait_until
 from model_trainer import job
@@ -20,7 +21,8 @@ from model_trainer.job_process import CLAIM, Ended, JobProcess, JobRequest, Prog
 from model_trainer.job_store import JobStore
 from performers import TINY
 from recognisers import tiny_model
-from som_classifier.model_loading import WatchedModel
+from repeating import Stream
+from som_classifier.model_loading import WatchedModel, load_model
 from teaching import GOGGLINGS, WAVES, Teacher
 
 
@@ -51,7 +53,7 @@ def finish(teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: py
         asked = teacher.jobs[-1].request
         arguments = json.dumps({"kind": asked.kind, "folder": str(asked.folder), **asked.fields})
         monkeypatch.setattr(sys, "argv", ["job", arguments])
-        monkeypatch.setattr(job, "PRESETS", {"pyramid": TINY})
+        monkeypatch.setattr(job, "PRESETS", {"pyramid": TINY, TINY.name: TINY})
         job.main()
         lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
         assert all(0 <= line["done"] <= 1 for line in lines[:-1])
@@ -145,6 +147,26 @@ def test_what_cannot_be_trained_fails_with_the_reason(teacher: Teacher, finish: 
         assert ended["message"] == ONE_ACTION
     with pytest.raises(Refusal, match="no preset 'none': use one of"):
         teacher.ask("train", set="kitchen", preset="none")
+
+
+def test_an_update_changes_what_the_model_says_of_the_segments_that_it_finds_as_before(
+    teacher: Teacher, finish: Finish
+) -> None:
+    teacher.ask("train", set="kitchen")
+    before = load_model(teacher.folder / f"models/{finish()['result']['model']}.npz")
+    span = {"agent": 1, "start_ns": SECOND_NS, "end_ns": 3 * SECOND_NS}
+    teacher.act(Stream().repeat(WAVES))
+    teacher.ask("correct", set="kitchen", **span)
+    teacher.ask("train", set="kitchen", update=before.id)
+    ended = finish()
+    after = load_model(teacher.folder / f"models/{ended['result']['model']}.npz")
+    assert ended["result"]["examples"] == 20
+    assert after.id != before.id and np.array_equal(
+        after.arrays["completeness_axes"], before.arrays["completeness_axes"]
+    )
+    assert not np.array_equal(after.arrays["verifier_axes"], before.arrays["verifier_axes"])
+    with pytest.raises(Refusal, match="there is no model 'none'"):
+        teacher.ask("train", set="kitchen", update="none")
 
 
 def test_one_job_runs_at_a_time_and_tells_how_far_it_is(teacher: Teacher) -> None:

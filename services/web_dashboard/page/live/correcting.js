@@ -86,7 +86,7 @@ export class Correcting {
   async train() {
     const set = this.set.name;
     const known = this.since.get(set);
-    const job = await this.training.start("train", { set });
+    const job = await this.training.start("train", { set, update: trainer.now.model });
     if (job) this.job = { id: job.id, set, known };
     this.look();
   }
