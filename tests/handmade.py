@@ -3,6 +3,7 @@
 import numpy as np
 
 from actum.som import Som
+from som_classifier.body_movement import BodyMovement
 from som_classifier.convolutions import COORDINATES, FILTERS, Convolutions, SecondOpinion
 from som_classifier.first_layer import MAP_INPUTS, FirstMaps
 from som_classifier.model import Model
@@ -49,6 +50,7 @@ def pyramid_model(**changes: object) -> PyramidModel:
         "concept_contrast": 2.0, "gains": [4.0, 8.0], "verification": [10.0, -3.0],
         "least_likeness": 0.2, "least_found_likeness": 0.3, "opinion_weight": 0.5,
         "usual_log_errors": [-2.5, -2.0],
+        "usual_movements": [[-3.0, -3.5], [-3.0, -3.0]], "most_movement_above": [1.0, 1.0],
     }  # fmt: skip
     metadata = PyramidMetadata.model_validate(PROVENANCE | about | changes)
     rng = np.random.default_rng(0)
@@ -71,7 +73,8 @@ def pyramid_model(**changes: object) -> PyramidModel:
     least = metadata.least_likeness, metadata.least_found_likeness
     calibrated = metadata.usual_log_errors, *metadata.verification, *least
     verifier = Verifier(axes[1], looked_at, offsets[1], *calibrated)
-    return PyramidModel(first, stages, opinion, verifier, action_map, layer3, metadata)
+    body = BodyMovement(metadata.usual_movements, metadata.most_movement_above, metadata.least_movement_m)
+    return PyramidModel(first, stages, opinion, verifier, body, action_map, layer3, metadata)
 
 
 KINDS: dict[str, type[Model]] = {"paper": PaperModel, "pyramid": PyramidModel}

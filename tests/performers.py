@@ -51,6 +51,7 @@ TINY = PyramidPreset(
         least_from_one=(0.15, 0.25),
         log_error=-2.5,
         threshold=0.3,
+        movement_above=1.0,
     ),
     spotting=SpottingPreset(
         interval_s=0.1,

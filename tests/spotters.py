@@ -31,7 +31,7 @@ class SpottingModel(PyramidModel):
 def spotting(model: Model, search: Callable[[SpottingOptions], Spotter | None], background_s: float = 60.0) -> Model:
     """Return the model with a search; it calls nothing unknown, so that whatever is found is answered."""
     parts = {field.name: getattr(model, field.name) for field in fields(PyramidModel)}
-    parts["metadata"] = parts["metadata"].model_copy(update={"least_movement_m": 0.0})
+    parts["body"] = replace(parts["body"], least_m=0.0)
     parts["verifier"] = replace(parts["verifier"], least_likeness=-1e9, least_found_likeness=-1e9)
     return SpottingModel(**parts, search=search, seen_background_s=background_s)
 

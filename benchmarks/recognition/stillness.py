@@ -176,7 +176,7 @@ def _answered(each: DevelopmentSet, pieces: Pieces) -> list[str]:
 def _answers(model: Model, asked: Sequence[SegmentSample]) -> list[tuple[Recognition, Recognition]]:
     """Return each answer of a model that measures no movement, and of the model itself."""
     assert isinstance(model, PyramidModel)
-    without = replace(model, metadata=model.metadata.model_copy(update={"least_movement_m": 0.0}))
+    without = replace(model, body=replace(model.body, least_m=0.0))
     frames = [encoded(model, sample) for sample in asked]
     return [(answer(without, own), answer(model, own)) for own in frames]
 

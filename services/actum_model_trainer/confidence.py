@@ -1,4 +1,4 @@
-"""Calibration of a model: inverse temperatures of its confidence, probability of a true instance, least movement.
+"""Calibration of a model: inverse temperatures of its confidence, and how much people move in an action.
 
 The first two are estimated on cross-validated scores, which show how well the model does on people it was not trained
 on. Few people show little of that, a single one nothing. Therefore each estimate is averaged with the value for models
@@ -17,6 +17,7 @@ from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
+from som_classifier.body_movement import PARTS, BodyMovement, log_movements
 from som_classifier.first_layer import FirstMaps
 from som_classifier.kinematics import movement_m
 from som_classifier.presets import Prior
@@ -24,6 +25,8 @@ from som_classifier.presets import Prior
 LEAST_MOVEMENT_SHARE = 0.5
 """Share of an action's usual movement below which another person hardly does it. Of the actions of four public sets, at
 most one in a hundred moves less, and in most of them one in 250; see `benchmarks.recognition.stillness`."""
+USUAL_SHARE = 0.99
+"""Share of true instances in which legs and trunk move no more than is expected of the action."""
 
 
 def inverse_temperatures(
@@ -86,6 +89,31 @@ def least_movement_m(samples: Sequence[SegmentSample]) -> float:
     for sample in samples:
         movements[sample.label].append(movement_m(sample.stamps_ns, sample.postures))
     return round(LEAST_MOVEMENT_SHARE * min(median(of_action) for of_action in movements.values()), 4)
+
+
+def body_movement(samples: Sequence[SegmentSample], targets: Indices, prior: Prior, people: int) -> BodyMovement:
+    """Return how much people move in each action.
+
+    By how much more legs and trunk hardly ever move is a quantile over the samples, each beside the mean of its action
+    by other people, averaged with the prior's.
+
+    Args:
+        samples: of all actions.
+        targets: (n,), their actions.
+        prior: of models of other people's actions.
+        people: who performed the samples.
+    """
+    moved = np.array([log_movements(each.stamps_ns, each.postures) for each in samples])
+    who = np.array([each.person for each in samples])
+    above = []
+    for own, target, person in zip(moved, targets, who, strict=True):
+        others = moved[(targets == target) & (who != person)]
+        above += [own - others.mean(axis=0)] if len(others) else []
+    usual = [moved[targets == target].mean(axis=0).tolist() for target in range(targets.max() + 1)]
+    expected = np.full(len(PARTS), prior.movement_above)
+    shown = np.quantile(above, USUAL_SHARE, axis=0) if above else expected
+    most_above = averaged_with_prior(shown, expected, prior, people).tolist()
+    return BodyMovement(usual, most_above, least_movement_m(samples))
 
 
 def averaged_with_prior(estimate: Any, expected: Any, prior: Prior, people: int) -> Any:

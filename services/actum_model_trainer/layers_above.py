@@ -10,7 +10,7 @@ from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum_model_trainer.augmentation import Variant, augmentation_for, variants
 from actum_model_trainer.background import negatives_of
-from actum_model_trainer.confidence import expected_log_errors, inverse_temperatures, least_movement_m
+from actum_model_trainer.confidence import body_movement, expected_log_errors, inverse_temperatures
 from actum_model_trainer.convolution_training import Convolved, blended
 from actum_model_trainer.discriminants import FittedStage, fit_discriminants, folds_of
 from actum_model_trainer.pooling import PooledVectors, Pooling
@@ -101,15 +101,17 @@ def train_above(
     log_errors = expected_log_errors(first, taught.measured, taught.targets, preset.prior)
     of_strange = pooling.of_background(*strange)
     verifier = trained_verifier(fitted[-1], pooled[-1], of_strange, convolved, folds, log_errors, taught.shown, preset)
+    body = body_movement(samples, taught.targets, preset.prior, taught.shown.people)
     metadata = (
         provenance(samples, preset, seed)
         | {"mirrors": taught.mirrors, "held_out": _cross_validated_counts(fitted[-1], taught.labels)}
+        | {"usual_movements": body.usual, "most_movement_above": body.most_above, "least_movement_m": body.least_m}
         | _verifier_parameters(verifier)
         | _layer_parameters(first, stages, opinion, upper, preset)
-        | _confidence_parameters(fitted, upper, samples, preset)
+        | {"gains": _gains(fitted, upper, samples, preset)}
     )
     described = PyramidMetadata.model_validate(metadata)
-    return PyramidModel(first, stages, opinion, verifier, upper.action_map, upper.layer3, described)
+    return PyramidModel(first, stages, opinion, verifier, body, upper.action_map, upper.layer3, described)
 
 
 def _background(
@@ -198,15 +200,12 @@ def _layer_parameters(
     }
 
 
-def _confidence_parameters(
+def _gains(
     fitted: Sequence[FittedStage], upper: UpperLayers, samples: Sequence[SegmentSample], preset: PyramidPreset
-) -> dict[str, Any]:
+) -> list[float]:
     people = len({sample.person for sample in samples})
     depth_inferred = any(sample.depth_inferred for sample in samples)
-    return {
-        "gains": inverse_temperatures(fitted, upper, preset.prior, people, depth_inferred),
-        "least_movement_m": least_movement_m(samples),
-    }
+    return inverse_temperatures(fitted, upper, preset.prior, people, depth_inferred)
 
 
 def _cross_validated_counts(stage: FittedStage, labels: Sequence[str]) -> dict[str, dict[str, int]]:

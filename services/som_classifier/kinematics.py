@@ -111,7 +111,7 @@ def movement_m(stamps_ns: NDArray[np.int64], postures: Array) -> float:
         stamps_ns: (n,), rising.
         postures: (n, 15, 3), low-passed, metres, NaN where a joint is missing.
     """
-    means = _averaged(stamps_ns, postures)
+    means = averaged(stamps_ns, postures)
     farthest_m2 = second_m2 = np.zeros((len(means), len(means)))
     for joint in means.swapaxes(0, 1):
         apart_m2 = np.nan_to_num(((joint[:, None] - joint) ** 2).sum(axis=2))
@@ -120,7 +120,7 @@ def movement_m(stamps_ns: NDArray[np.int64], postures: Array) -> float:
     return float(np.sqrt((farthest_m2 + second_m2).max() / 2))
 
 
-def _averaged(stamps_ns: NDArray[np.int64], postures: Array) -> Array:
+def averaged(stamps_ns: NDArray[np.int64], postures: Array) -> Array:
     """Return the mean posture of each interval (intervals, 15, 3), NaN where a joint is missing all the while."""
     first = np.unique((stamps_ns - stamps_ns[0]) // AVERAGED_NS, return_index=True)[1]
     known = np.add.reduceat(~np.isnan(postures), first, axis=0, dtype=np.float64)

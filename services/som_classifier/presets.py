@@ -56,6 +56,8 @@ class Prior:
         log_error: the mean log(d²) of postures from the posture map that a person not trained on may well reach with a
             trained action, d in metres over all joints of a standard body.
         threshold: completeness that what is found without marks must exceed.
+        movement_above: by how much the logarithm of legs' or trunk's movement exceeds its action's mean in hardly any
+            instance.
     """
 
     people: float
@@ -66,6 +68,7 @@ class Prior:
     least_from_one: tuple[float, float]
     log_error: float
     threshold: float
+    movement_above: float
 
 
 @dataclass(frozen=True)
@@ -261,6 +264,7 @@ PYRAMID = PyramidPreset(
         least_from_one=(0.15, 0.25),
         log_error=-2.5,
         threshold=0.5,
+        movement_above=1.0,
     ),
     spotting=SpottingPreset(
         interval_s=0.1,

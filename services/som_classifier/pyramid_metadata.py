@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from actum.skeletons import JOINTS
+from som_classifier.body_movement import PARTS
 from som_classifier.model import ModelMetadata
 from som_classifier.spotting.spotted import Finite
 from som_classifier.spotting.spotting_model import Positive, PyramidSpottingMetadata
@@ -33,6 +34,8 @@ class PyramidMetadata(ModelMetadata):
         opinion_weight: of the second opinion's scores beside those of the discriminants.
         usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
             trained on may well reach, d in metres over all joints of a standard body.
+        usual_movements: for each action, the mean logarithm of how much legs and trunk move (m).
+        most_movement_above: by how much more legs, and the trunk, hardly ever move in an action.
         least_movement_m: the least movement of an action: with less a segment may be none of those trained; 0 in files
             of versions that did not measure it, for which stillness is an action like others.
         spotting: of the search for actions without marks; None where the model was not trained for that.
@@ -56,6 +59,8 @@ class PyramidMetadata(ModelMetadata):
     least_found_likeness: Finite
     opinion_weight: Annotated[float, Field(ge=0, allow_inf_nan=False)]
     usual_log_errors: list[Finite]
+    usual_movements: list[Annotated[list[Finite], Field(min_length=len(PARTS), max_length=len(PARTS))]]
+    most_movement_above: Annotated[list[Finite], Field(min_length=len(PARTS), max_length=len(PARTS))]
     least_movement_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
     spotting: PyramidSpottingMetadata | None = None
 
@@ -69,7 +74,7 @@ class PyramidMetadata(ModelMetadata):
         actions = len(self.labels)
         if self.joint_order != list(JOINTS):
             return "its joint order is not this version's"
-        lengths = len(set(self.labels)), len(self.gains), len(self.usual_log_errors)
-        if lengths != (actions, len(self.fractions), actions):
+        lengths = len(set(self.labels)), len(self.gains), len(self.usual_log_errors), len(self.usual_movements)
+        if lengths != (actions, len(self.fractions), actions, actions):
             return "its labels or its stages do not fit together"
         return None if self.spotting is None else self.spotting.problem(actions)

@@ -1,10 +1,10 @@
 """The default recogniser: posture, velocity and arm maps, a temporal pyramid, linear discriminants, an action map."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from operator import mul
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from actum.arrays import Array, Indices
 from actum.node import SECOND_NS
 from actum.som import Som
+from som_classifier.body_movement import BodyMovement, Evidence, log_movements
 from som_classifier.convolutions import COORDINATES, FILTERS, Convolutions, SecondOpinion, resampled
 from som_classifier.first_layer import CHANNELS, INPUT_SIZES, MAP_INPUTS, Channel, FirstMaps
 from som_classifier.frame_activity import (
@@ -42,18 +43,6 @@ UPPER = ("concepts", "layer3")
 """The arrays of the upper layers: a map, which checks itself, and neurons, whose precision is their own."""
 
 
-class Evidence(NamedTuple):
-    """What complete segments are judged by.
-
-    Attributes:
-        pooled: (inputs,), the pyramid's vector.
-        features: (features,), of the convolutions.
-    """
-
-    pooled: NDArray[np.float32]
-    features: NDArray[np.float32]
-
-
 @dataclass(frozen=True, eq=False)
 class PyramidModel(Model):
     """The trained layers. `confidence` is a probability, calibrated on people left out of training.
@@ -63,6 +52,7 @@ class PyramidModel(Model):
         stages: the discriminants on the maps' pooled activities.
         opinion: the second opinion on complete segments.
         verifier: tells true instances of an action from other movement.
+        body: how much people move in each action.
         action_map: the second layer, a map of the discriminants' scores.
         layer3: one neuron per action on the second layer's activity.
         heads: of the search for actions without marks; None where the model was not trained for that.
@@ -72,6 +62,7 @@ class PyramidModel(Model):
     stages: StageDiscriminants
     opinion: SecondOpinion
     verifier: Verifier
+    body: BodyMovement
     action_map: ActionMap
     layer3: SupervisedLayer
     metadata: PyramidMetadata
@@ -125,6 +116,7 @@ class PyramidModel(Model):
             StageDiscriminants(arrays["axes"], arrays["offsets"], tuple(stored.fractions), *durations),
             SecondOpinion(convolutions, arrays["opinion_axes"], arrays["opinion_offsets"], stored.opinion_weight),
             Verifier(*verifying, stored.usual_log_errors, stored.verification[0], stored.verification[1], *least),
+            BodyMovement(stored.usual_movements, stored.most_movement_above, stored.least_movement_m),
             ActionMap(action_som, stored.concept_contrast, arrays["concept_mean"]),
             SupervisedLayer(arrays["layer3"]),
             stored,
@@ -165,7 +157,7 @@ class PyramidModel(Model):
             unknown=likeness is not None and likeness < self.verifier.least_likeness,
             doubtful=likeness is not None and likeness < self.verifier.least_found_likeness,
         )
-        return self._doubted_if_still(recognition, frames) if complete else recognition
+        return recognition if evidence is None else self.body.doubted(recognition, winner, evidence)
 
     @property
     def spotting(self) -> PyramidSpottingMetadata | None:
@@ -239,25 +231,12 @@ class PyramidModel(Model):
     def evidence(self, frames: Sequence[Frame]) -> Evidence:
         """Return what a complete segment is judged by, of the actor as seen or mirrored."""
         activities: list[FrameActivity] = [frame.activity for frame in frames]
+        stamps_ns = np.array([frame.stamp_ns for frame in frames if frame.kinematics is not None])
         postures = np.array([frame.kinematics.posture for frame in frames if frame.kinematics is not None])
         as_read = mirrored(postures) if self.reads_in_mirror(activities) else postures
         features = self.opinion.convolutions.features(resampled(as_read))
-        return Evidence(self.pyramid.vector(self.prefix_sums(activities)), features)
-
-    def _doubted_if_still(self, recognition: Recognition, frames: Sequence[Frame]) -> Recognition:
-        """Return the answer as it is or, where a segment moves less than any action, as unknown and as much less sure.
-
-        Scores alone do not show that: every action begins and ends at rest, so that rest scores like a part of one.
-        """
-        postures = np.array([frame.kinematics.posture for frame in frames if frame.kinematics is not None])
-        moved_m = movement_m(np.array([frame.stamp_ns for frame in frames]), postures)
-        if moved_m >= self.metadata.least_movement_m:
-            return recognition
-        share = moved_m / self.metadata.least_movement_m
-        familiarity = share * (recognition.familiarity or 0.0)
-        return replace(
-            recognition, confidence=share * recognition.confidence, familiarity=familiarity, unknown=True, doubtful=True
-        )
+        pooled = self.pyramid.vector(self.prefix_sums(activities))
+        return Evidence(pooled, features, log_movements(stamps_ns, postures), movement_m(stamps_ns, postures))
 
     def _number_problem(self) -> str | None:
         """Return the first array whose numbers are not of the kind they have to be, None where there is none."""

@@ -7,6 +7,7 @@ import pytest
 
 from actum.som import Som
 from actum_model_trainer.confidence import (
+    body_movement,
     cross_validated_inverse_temperature,
     expected_log_errors,
     inverse_temperatures,
@@ -18,6 +19,7 @@ from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from performers import TINY
 from recognisers import tiny_samples
+from som_classifier.body_movement import LEAST_M, log_movements
 from som_classifier.first_layer import INPUT_SIZES, FirstMaps
 
 ACTIONS, EACH = 3, 30
@@ -128,3 +130,27 @@ def test_one_sample_that_was_marked_while_nothing_was_done_does_not_decide() -> 
 
 def test_standing_still_can_be_taught() -> None:
     assert least_movement_m([moving("lift", 0.4), moving("lift", 0.5), moving("stand", 0.01)]) < 0.01
+
+
+def swaying(person: str, way_m: float) -> SegmentSample:
+    """A sample of one action in which everything goes to and fro so far."""
+    return replace(moving("lift", way_m), person=person)
+
+
+def test_how_much_legs_and_trunk_move_is_the_mean_of_the_logarithm_over_an_actions_samples() -> None:
+    samples = [swaying("1", 0.4), swaying("2", 0.8), moving("stand", 0.0)]
+    body = body_movement(samples, np.array([0, 0, 1]), PRIOR, 2)
+    first, second = (np.exp(log_movements(each.stamps_ns, each.postures)) for each in samples[:2])
+    assert np.exp(body.usual[0]) == pytest.approx(np.sqrt(first * second))
+    assert np.exp(body.usual[1]) == pytest.approx([LEAST_M, LEAST_M])
+
+
+def test_by_how_much_more_they_move_is_shown_by_other_people_and_from_one_person_the_prior() -> None:
+    samples = [swaying("1", 0.4), swaying("2", 0.8), swaying("2", 0.8)]
+    targets = np.zeros(3, dtype=np.intp)
+    assert body_movement(samples, targets, PRIOR, 1).most_above == [PRIOR.movement_above] * 2
+    shown = np.log(2)  # the second person beside the first
+    expected = (PRIOR.people * PRIOR.movement_above + shown) / (PRIOR.people + 1)
+    assert body_movement(samples, targets, PRIOR, 2).most_above == pytest.approx([expected] * 2, rel=1e-3)
+    alone = [swaying("1", 0.4)] * 3
+    assert body_movement(alone, targets, PRIOR, 3).most_above == [PRIOR.movement_above] * 2, "nobody beside another"

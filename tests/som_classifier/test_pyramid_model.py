@@ -200,7 +200,7 @@ def test_only_a_whole_segment_is_unknown(least: float, unknown: bool) -> None:
 
 
 def with_least_movement(least_m: float) -> PyramidModel:
-    return replace(model(), metadata=model().metadata.model_copy(update={"least_movement_m": least_m}))
+    return replace(model(), body=replace(model().body, least_m=least_m))
 
 
 @each_sample

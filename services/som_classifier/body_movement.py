@@ -1,0 +1,87 @@
+"""How much people move in an action: where legs or trunk move far more, or nothing moves, another movement is done."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.arrays import Array
+from actum.skeletons import INDEX
+from som_classifier.kinematics import averaged
+from som_classifier.model import Recognition
+
+PARTS = (
+    tuple(INDEX[joint] for joint in ("left_knee", "left_foot", "right_knee", "right_foot")),
+    tuple(INDEX[joint] for joint in ("neck", "head")),
+)
+"""The joints of the legs, and those of the trunk."""
+LEAST_M = 0.03
+"""Legs or a trunk that move less are at rest: joints of people who stand still move by as much (m)."""
+
+
+def log_movements(stamps_ns: NDArray[np.int64], postures: Array) -> Array:
+    """Return the logarithm of how much each part moves in a segment, (2,).
+
+    A part's movement is the standard deviation of its joints' positions in the upright frame, averaged over a quarter
+    of a second (m).
+
+    Args:
+        stamps_ns: (n,), rising.
+        postures: (n, 15, 3), low-passed, metres, NaN where a joint is missing.
+    """
+    means = averaged(stamps_ns, postures)
+    known = np.where(np.isnan(means).all(axis=0), 0.0, means)
+    deviations_m = np.sqrt(np.nanvar(known, axis=0).sum(axis=1))
+    return np.log([max(float(deviations_m[list(part)].mean()), LEAST_M) for part in PARTS])
+
+
+class Evidence(NamedTuple):
+    """What complete segments are judged by.
+
+    Attributes:
+        pooled: (inputs,), the pyramid's vector.
+        features: (features,), of the convolutions.
+        moved: (2,), how much legs and trunk move, as `log_movements` returns it.
+        moved_m: how far the person moves.
+    """
+
+    pooled: NDArray[np.float32]
+    features: NDArray[np.float32]
+    moved: Array
+    moved_m: float
+
+
+@dataclass(frozen=True)
+class BodyMovement:
+    """How much people move in each action.
+
+    Attributes:
+        usual: (actions, 2), mean logarithm of how much legs and trunk move.
+        most_above: (2,), by how much more they hardly ever move in a true instance.
+        least_m: less than this moves nobody who acts.
+    """
+
+    usual: Sequence[Sequence[float]]
+    most_above: Sequence[float]
+    least_m: float
+
+    def doubted(self, recognition: Recognition, action: int, evidence: Evidence) -> Recognition:
+        """Return the answer as it is or, where the person moves otherwise than in the action (its index), as less sure.
+
+        A segment that moves less than any action is unknown. Scores alone do not show that: every action begins and
+        ends at rest, so that rest scores like a part of one. Nor do they show legs or a trunk that move far more.
+        """
+        still = 1.0 if evidence.moved_m >= self.least_m else evidence.moved_m / self.least_m
+        above = float((evidence.moved - self.usual[action] - self.most_above).max())
+        if still == 1.0 and above <= 0.0:
+            return recognition
+        return replace(
+            recognition,
+            confidence=still * recognition.confidence,
+            familiarity=still * math.exp(-max(above, 0.0)) * (recognition.familiarity or 0.0),
+            unknown=recognition.unknown or still < 1.0,
+            doubtful=True,
+        )
