@@ -15,6 +15,7 @@ from benchmarks.page import measure_page, part_asked_for
 from .bench import EVENTS, FALSE, HALF, LATENCY, POINTS, Bench, Goals, scores_table
 from .cost import cost
 from .early import early
+from .familiarity import familiarity
 from .idle import idle
 from .methods import COST_OF_A_SECOND, INNER_FOLDS
 from .never_trained import never_trained
@@ -66,6 +67,7 @@ PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
     "scene": ("The simulated scene, new people", scene),
     "idle": ("An hour without an action", idle),
     "strangers": ("Other people's movement", strangers),
+    "familiarity": ("Familiarity of what is found", familiarity),
     "early": ("Partial answers", early),
     "cost": ("Four people at once", cost),
 }

@@ -23,6 +23,9 @@ COUNTS = (5, 1)
 LEFT_OUT_SHARE = 0.25
 STRANGE_TESTED = 100
 """How many sequences of other sets a draw is asked about at most."""
+STRANGE_SHARE = 0.25
+"""How many actions left out, and as many of other sets, count in the calibration of familiarity for each that was
+taught: so many training assumes."""
 
 SURE, UNSURE = 0.8, 0.5
 KNOWN, LEFT_OUT, ELSEWHERE = "taught", "left out", "other sets"
@@ -72,6 +75,17 @@ class Asked:
         """Write how many of a group are told unknown."""
         return percent(float(np.mean([answer.unknown for answer in self.answers[name]])))
 
+    @property
+    def verified(self) -> tuple[list[float], list[bool]]:
+        """List familiarities, and whether each is of a true instance of the action that is named."""
+        known = [answer.familiarity or 0.0 for answer in self.answers[KNOWN]]
+        strange = []
+        for name in (LEFT_OUT, ELSEWHERE):
+            step = max(len(self.answers[name]) / (STRANGE_SHARE * len(known)), 1.0)
+            counted = [self.answers[name][int(n * step)] for n in range(int(len(self.answers[name]) / step))]
+            strange += [answer.familiarity or 0.0 for answer in counted]
+        return known + strange, self.right + [False] * len(strange)
+
     def sure(self, name: str) -> str:
         """Write how many are told with confidence."""
         return percent(float(np.mean([a.confidence > SURE and not a.unknown for a in self.answers[name]])))
@@ -91,8 +105,15 @@ the ridge."""
     yield table(("set, examples", *header), ([f"{name}, {count}", *_areas(own)] for name, count, own in measured))
     yield f"""At the threshold that our model sets by itself, all draws pooled: how many (%) are told unknown, and of
 those not taught how many are told with a confidence above {SURE} and not unknown. Right, confidence (means) and ECE are
-of the answers to actions that were taught."""
-    header = ["right %", "confidence %", "ECE", *(f"unknown: {name}" for name in (KNOWN, LEFT_OUT, ELSEWHERE))]
+of the answers to actions that were taught. ECE of familiarity: whether a segment is a true instance of the action it is
+called as often as its familiarity says; left out and other sets count {STRANGE_SHARE} each for each that was taught."""
+    header = [
+        "right %",
+        "confidence %",
+        "ECE",
+        "ECE of familiarity",
+        *(f"unknown: {name}" for name in (KNOWN, LEFT_OUT, ELSEWHERE)),
+    ]
     header += [f"sure: {name}" for name in (LEFT_OUT, ELSEWHERE)]
     yield table(("set, examples", *header), ([f"{name}, {count}", *_told(own)] for name, count, own in measured))
     if why_no_camera() is None:
@@ -145,10 +166,10 @@ def _areas(own: Asked) -> list[str]:
 
 def _told(own: Asked) -> list[str]:
     confidences, right = np.array([answer.confidence for answer in own.answers[KNOWN]]), np.array(own.right)
-    error = f"{calibration_error(confidence_bins(confidences, right)):.3f}"
+    errors = [f"{calibration_error(confidence_bins(*each)):.3f}" for each in ((confidences, right), own.verified)]
     unknown = [own.unknown(name) for name in (KNOWN, LEFT_OUT, ELSEWHERE)]
     sure = [own.sure(name) for name in (LEFT_OUT, ELSEWHERE)]
-    return [percent(right.mean()), percent(confidences.mean()), error, *unknown, *sure]
+    return [percent(right.mean()), percent(confidences.mean()), *errors, *unknown, *sure]
 
 
 def _exercises(data: Datasets) -> Iterator[str]:
