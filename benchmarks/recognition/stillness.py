@@ -17,7 +17,7 @@ from actum_model_trainer.confidence import LEAST_MOVEMENT_SHARE, least_movement_
 from actum_model_trainer.samples import LabelledStream, SegmentSample, samples_from
 from scene_simulator.driven_simulator import DrivenSimulator
 from scene_simulator.settings import Settings
-from som_classifier.kinematics import movement_m
+from som_classifier.kinematics import averaged, movement_m
 from som_classifier.model import Model, Recognition
 from som_classifier.pyramid_model import PyramidModel
 
@@ -148,7 +148,7 @@ def ratios_of(each: DevelopmentSet, pieces: Pieces) -> Iterator[Ratios]:
 
 
 def _moved(samples: Sequence[SegmentSample]) -> Floats:
-    return np.array([movement_m(sample.stamps_ns, sample.postures) for sample in samples])
+    return np.array([movement_m(averaged(sample.stamps_ns, sample.postures)) for sample in samples])
 
 
 def _left_out(measured: Sequence[Ratios], sets: Sequence[DevelopmentSet]) -> Iterator[list[str]]:

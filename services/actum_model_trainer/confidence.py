@@ -19,7 +19,7 @@ from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
 from som_classifier.body_movement import PARTS, BodyMovement, log_movements
 from som_classifier.first_layer import FirstMaps
-from som_classifier.kinematics import movement_m
+from som_classifier.kinematics import averaged, movement_m
 from som_classifier.presets import Prior
 
 LEAST_MOVEMENT_SHARE = 0.5
@@ -87,7 +87,7 @@ def least_movement_m(samples: Sequence[SegmentSample]) -> float:
     """
     movements: defaultdict[str, list[float]] = defaultdict(list)
     for sample in samples:
-        movements[sample.label].append(movement_m(sample.stamps_ns, sample.postures))
+        movements[sample.label].append(movement_m(averaged(sample.stamps_ns, sample.postures)))
     return round(LEAST_MOVEMENT_SHARE * min(median(of_action) for of_action in movements.values()), 4)
 
 
@@ -103,7 +103,7 @@ def body_movement(samples: Sequence[SegmentSample], targets: Indices, prior: Pri
         prior: of models of other people's actions.
         people: who performed the samples.
     """
-    moved = np.array([log_movements(each.stamps_ns, each.postures) for each in samples])
+    moved = np.array([log_movements(averaged(each.stamps_ns, each.postures)) for each in samples])
     who = np.array([each.person for each in samples])
     above = []
     for own, target, person in zip(moved, targets, who, strict=True):

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array
 from actum.skeletons import INDEX
-from som_classifier.kinematics import averaged
 from som_classifier.model import Recognition
 
 PARTS = (
@@ -22,19 +21,17 @@ LEAST_M = 0.03
 """Legs or a trunk that move less are at rest: joints of people who stand still move by as much (m)."""
 
 
-def log_movements(stamps_ns: NDArray[np.int64], postures: Array) -> Array:
+def log_movements(means: Array) -> Array:
     """Return the logarithm of how much each part moves in a segment, (2,).
 
-    A part's movement is the standard deviation of its joints' positions in the upright frame, averaged over a quarter
-    of a second (m).
+    A part's movement is the standard deviation of its joints' positions in the upright frame (m).
 
     Args:
-        stamps_ns: (n,), rising.
-        postures: (n, 15, 3), low-passed, metres, NaN where a joint is missing.
+        means: (intervals, 15, 3), as `averaged` returns them.
     """
-    means = averaged(stamps_ns, postures)
     known = np.where(np.isnan(means).all(axis=0), 0.0, means)
-    deviations_m = np.sqrt(np.nanvar(known, axis=0).sum(axis=1))
+    variances_m2 = np.nanvar(known, axis=0) if np.isnan(known).any() else known.var(axis=0)
+    deviations_m = np.sqrt(variances_m2.sum(axis=1))
     return np.log([max(float(deviations_m[list(part)].mean()), LEAST_M) for part in PARTS])
 
 

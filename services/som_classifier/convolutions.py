@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Mask
@@ -25,6 +26,8 @@ KERNELS = np.array(
     [[2 if n in twos else -1 for n in range(WEIGHTS)] for twos in combinations(range(WEIGHTS), 3)], np.float32
 )
 """All 84 kernels, (84, 9)."""
+LONGEST_REACH = WEIGHTS // 2 * max(DILATIONS)
+"""Instants from a kernel's middle to its end."""
 FILTERS = len(DILATIONS) * len(KERNELS)
 """Pairs of a dilation and a kernel, kernel after kernel for each dilation."""
 
@@ -66,20 +69,26 @@ class Convolutions:
     def responses(self, series: Floats32) -> Floats32:
         """Return the response of each filter at each instant of a series (45, INSTANTS), (FILTERS, INSTANTS)."""
         inputs = (self.coordinates @ series).reshape(len(DILATIONS), len(KERNELS), INSTANTS)
-        half = WEIGHTS // 2
-        found = []
-        for of_dilation, dilation in zip(inputs, DILATIONS, strict=True):
-            padded = np.pad(of_dilation, ((0, 0), (half * dilation, half * dilation)))
-            shifted = [padded[:, n * dilation : n * dilation + INSTANTS] for n in range(WEIGHTS)]
-            found.append(sum(weights[:, None] * each for weights, each in zip(KERNELS.T, shifted, strict=True)))
-        return np.concatenate(found)
+        padded = np.zeros((*inputs.shape[:2], INSTANTS + 2 * LONGEST_REACH), np.float32)
+        padded[:, :, LONGEST_REACH : LONGEST_REACH + INSTANTS] = inputs
+        windows = sliding_window_view(padded, INSTANTS, axis=2)
+        found = np.empty_like(inputs)
+        for of_dilation, dilation, responses in zip(windows, DILATIONS, found, strict=True):
+            first = LONGEST_REACH - WEIGHTS // 2 * dilation
+            weighed = of_dilation[:, first : first + WEIGHTS * dilation : dilation] * KERNELS[:, :, None]
+            np.add.reduce(weighed, axis=1, out=responses)
+        return found.reshape(FILTERS, INSTANTS)
 
     def features(self, series: Floats32) -> Floats32:
         """Return the share of the instants at which each response exceeds each of its biases, (FILTERS * biases,)."""
-        exceeds = self.responses(series)[:, None, :] > self.biases[:, :, None]
-        exceeds &= COUNTED[:, None, :]
-        shares: Floats32 = exceeds.sum(axis=2, dtype=np.float32) / COUNTED.sum(axis=1, dtype=np.float32)[:, None]
+        exceeds = _packed(self.responses(series)[:, None, :] > self.biases[:, :, None])
+        shares: Floats32 = np.bitwise_count(exceeds & PACKED[:, None]) / COUNTS[:, None]
         return shares.ravel()
+
+
+def _packed(mask: Mask) -> NDArray[np.uint32]:
+    """Return a mask (…, INSTANTS) as one number each, (…), whose bits can be counted at once."""
+    return np.packbits(mask, axis=-1).view(np.uint32)[..., 0]
 
 
 def _counted(filter_number: int) -> Mask:
@@ -92,6 +101,10 @@ def _counted(filter_number: int) -> Mask:
 
 COUNTED = np.stack([_counted(number) for number in range(FILTERS)])
 """At which instants each filter counts, (FILTERS, INSTANTS): every other one only where it lies within the series."""
+COUNTS = COUNTED.sum(axis=1, dtype=np.float32)
+"""At how many, (FILTERS,)."""
+PACKED = _packed(COUNTED)
+"""The same as bits, (FILTERS,)."""
 
 
 @dataclass(frozen=True, eq=False)

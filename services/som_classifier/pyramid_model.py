@@ -26,7 +26,7 @@ from som_classifier.frame_activity import (
 )
 from som_classifier.frames import Frame
 from som_classifier.handedness import mirrored
-from som_classifier.kinematics import movement_m
+from som_classifier.kinematics import averaged, movement_m
 from som_classifier.map_activity import soft_activity, without_repeats
 from som_classifier.model import Arrays, Model, Recognition
 from som_classifier.pyramid import PrefixSums, Pyramid
@@ -236,7 +236,8 @@ class PyramidModel(Model):
         as_read = mirrored(postures) if self.reads_in_mirror(activities) else postures
         features = self.opinion.convolutions.features(resampled(as_read))
         pooled = self.pyramid.vector(self.prefix_sums(activities))
-        return Evidence(pooled, features, log_movements(stamps_ns, postures), movement_m(stamps_ns, postures))
+        means = averaged(stamps_ns, postures)
+        return Evidence(pooled, features, log_movements(means), movement_m(means))
 
     def _number_problem(self) -> str | None:
         """Return the first array whose numbers are not of the kind they have to be, None where there is none."""

@@ -21,6 +21,7 @@ from performers import TINY
 from recognisers import tiny_samples
 from som_classifier.body_movement import LEAST_M, log_movements
 from som_classifier.first_layer import INPUT_SIZES, FirstMaps
+from som_classifier.kinematics import averaged
 
 ACTIONS, EACH = 3, 30
 TARGETS = np.repeat(np.arange(ACTIONS), EACH)
@@ -140,7 +141,7 @@ def swaying(person: str, way_m: float) -> SegmentSample:
 def test_how_much_legs_and_trunk_move_is_the_mean_of_the_logarithm_over_an_actions_samples() -> None:
     samples = [swaying("1", 0.4), swaying("2", 0.8), moving("stand", 0.0)]
     body = body_movement(samples, np.array([0, 0, 1]), PRIOR, 2)
-    first, second = (np.exp(log_movements(each.stamps_ns, each.postures)) for each in samples[:2])
+    first, second = (np.exp(log_movements(averaged(each.stamps_ns, each.postures))) for each in samples[:2])
     assert np.exp(body.usual[0]) == pytest.approx(np.sqrt(first * second))
     assert np.exp(body.usual[1]) == pytest.approx([LEAST_M, LEAST_M])
 

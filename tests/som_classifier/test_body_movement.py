@@ -12,10 +12,12 @@ from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from people import STANDING
 from som_classifier.body_movement import LEAST_M, BodyMovement, Evidence, log_movements
+from som_classifier.kinematics import averaged
 from som_classifier.model import Recognition
 
 FRAMES = 60
 STAMPS_NS = np.arange(FRAMES) * SECOND_NS // 30
+LEGS = ("left_knee", "left_foot", "right_knee", "right_foot")
 BODY = BodyMovement(usual=[[math.log(0.05), math.log(0.04)]], most_above=[math.log(2.0), math.log(3.0)], least_m=0.2)
 SURE = Recognition("lift", 0.9, {"lift": 1.0}, "right_arm", 0.8)
 
@@ -35,14 +37,14 @@ def judged(legs_m: float, trunk_m: float, moved_m: float = 0.5) -> Recognition:
 
 
 def test_a_part_moves_by_the_standard_deviation_of_its_joints() -> None:
-    legs, trunk = np.exp(log_movements(STAMPS_NS, swaying(("left_knee", "left_foot", "right_knee", "right_foot"), 0.2)))
+    legs, trunk = np.exp(log_movements(averaged(STAMPS_NS, swaying(LEGS, 0.2))))
     assert legs == pytest.approx(0.2 / math.sqrt(2), rel=0.05) and trunk == pytest.approx(LEAST_M)
-    legs, trunk = np.exp(log_movements(STAMPS_NS, swaying(("neck", "head"), 0.2)))
+    legs, trunk = np.exp(log_movements(averaged(STAMPS_NS, swaying(("neck", "head"), 0.2))))
     assert legs == pytest.approx(LEAST_M) and trunk == pytest.approx(0.2 / math.sqrt(2), rel=0.05)
 
 
 def test_arms_are_no_part_of_it() -> None:
-    moved = log_movements(STAMPS_NS, swaying(("left_hand", "right_hand", "left_elbow", "right_elbow"), 0.5))
+    moved = log_movements(averaged(STAMPS_NS, swaying(("left_hand", "right_hand", "left_elbow", "right_elbow"), 0.5)))
     assert np.exp(moved) == pytest.approx([LEAST_M, LEAST_M])
 
 
@@ -50,7 +52,7 @@ def test_missing_joints_do_not_move() -> None:
     postures = swaying(("left_foot", "right_foot"), 0.2)
     postures[:, INDEX["left_foot"]] = np.nan
     postures[::2, INDEX["right_foot"]] = np.nan
-    legs, trunk = np.exp(log_movements(STAMPS_NS, postures))
+    legs, trunk = np.exp(log_movements(averaged(STAMPS_NS, postures)))
     assert legs == pytest.approx(0.2 / math.sqrt(2) / 4, rel=0.1) and trunk == pytest.approx(LEAST_M)
 
 

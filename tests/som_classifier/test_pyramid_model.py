@@ -18,7 +18,7 @@ from som_classifier.convolutions import resampled
 from som_classifier.frame_activity import FrameActivity, known_joint_share
 from som_classifier.frames import Frame
 from som_classifier.handedness import mirrored
-from som_classifier.kinematics import movement_m
+from som_classifier.kinematics import averaged, movement_m
 from som_classifier.model import Recognition
 from som_classifier.pyramid import SCALE, Pyramid
 from som_classifier.pyramid_model import PyramidModel
@@ -206,7 +206,7 @@ def with_least_movement(least_m: float) -> PyramidModel:
 @each_sample
 def test_who_moves_half_as_far_as_the_least_is_unknown_and_half_as_sure(sample: SegmentSample) -> None:
     usual = answer(model(), encoded(model(), sample))
-    moved_m = movement_m(sample.stamps_ns, sample.postures)
+    moved_m = movement_m(averaged(sample.stamps_ns, sample.postures))
     found = answer(strict := with_least_movement(2 * moved_m), encoded(strict, sample))
     assert found.unknown and found.familiarity == pytest.approx((usual.familiarity or 0) / 2)
     assert found.confidence == pytest.approx(usual.confidence / 2)
@@ -215,7 +215,7 @@ def test_who_moves_half_as_far_as_the_least_is_unknown_and_half_as_sure(sample: 
 
 @each_sample
 def test_who_moves_as_far_as_the_least_is_answered_as_ever(sample: SegmentSample) -> None:
-    enough = with_least_movement(movement_m(sample.stamps_ns, sample.postures))
+    enough = with_least_movement(movement_m(averaged(sample.stamps_ns, sample.postures)))
     unmeasured = with_least_movement(0.0)
     frames = encoded(enough, sample)
     assert enough.recognise(frames, True) == unmeasured.recognise(frames, True)
