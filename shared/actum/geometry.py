@@ -34,8 +34,8 @@ def is_rigid(transform: Array, furthest_m: float) -> bool:
     rotation, shift_m = transform[:3, :3], transform[:3, 3]
     if not np.isfinite(transform).all() or np.abs(rotation).max() > 2 or np.abs(shift_m).max() > furthest_m:
         return False
-    orthogonal = np.allclose(rotation @ rotation.T, np.eye(3), atol=RIGID_TOLERANCE)
-    return bool(orthogonal and np.linalg.det(rotation) > 0 and np.array_equal(transform[3], (0, 0, 0, 1)))
+    orthogonal = (np.abs(rotation @ rotation.T - np.eye(3)) <= RIGID_TOLERANCE).all()
+    return bool(orthogonal and np.linalg.det(rotation) > 0 and transform[3].tolist() == [0, 0, 0, 1])
 
 
 def invert(b_from_a: Array) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 
 from action_fusion.choice.evidence import Choice, Evidence
 from action_fusion.settings import Settings
-from action_fusion.tracks.comotion import Comotion
+from action_fusion.tracks.comotion import Comotion, distances_m
 from action_fusion.tracks.hand_tracks import HandTrack, stops
 from action_fusion.tracks.object_tracks import noise_m
 from actum.arrays import Array, Indices, Mask
@@ -65,7 +65,7 @@ def _misses(pairs: Sequence[Comotion], settings: Settings) -> list[tuple[float, 
     if not pairs:
         return []
     hand, stopped = pairs[0].hand, stops(pairs[0].hand)
-    closings = _closings(hand, pairs)
+    closings = _closings(hand, pairs, stopped.last)
     distances = np.stack([pair.distances_m for pair in pairs])
     missed = distances * np.sqrt(1 - closings**2)
     in_grasp = distances <= (TOUCHED_M if stopped.acted_before else settings.grasp_m)
@@ -78,9 +78,12 @@ def _misses(pairs: Sequence[Comotion], settings: Settings) -> list[tuple[float, 
     return [(float(np.median(missed[row, counted[row]])), pair) for row, pair in enumerate(pairs) if touched[row]]
 
 
-def _closings(hand: HandTrack, pairs: Sequence[Comotion]) -> Array:
-    """Measure the share (pairs, n) of the hand's last step by which it came nearer to each object, 0 to 1."""
-    since = _last_instants_away(hand.positions_m, REACH_STEP_M)
+def _closings(hand: HandTrack, pairs: Sequence[Comotion], instants: Mask) -> Array:
+    """Measure the share (pairs, n) of the hand's last step by which it came nearer to each object, 0 to 1.
+
+    It is measured at the given instants (n,), and 0 at all others.
+    """
+    since = _last_instants_away(hand.positions_m, REACH_STEP_M, instants)
     steps = np.linalg.norm(hand.positions_m - hand.positions_m[since], axis=1)
     stepped = (since >= 0) & (steps > 0)
     before_m = np.stack([np.linalg.norm(pair.object_m - hand.positions_m[since], axis=1) for pair in pairs])
@@ -89,17 +92,18 @@ def _closings(hand: HandTrack, pairs: Sequence[Comotion]) -> Array:
     return closings
 
 
-def _last_instants_away(positions_m: Array, step_m: float) -> Indices:
-    """Find, for each of n positions (n, 3), the last earlier one that is `step_m` or more away.
+def _last_instants_away(positions_m: Array, step_m: float, instants: Mask) -> Indices:
+    """Find, for the given ones (n,) of n positions (n, 3), the last earlier one that is `step_m` or more away.
 
     Returns:
         indices (n,), -1 where there is none.
     """
     last = np.full(len(positions_m), -1, dtype=np.int64)
-    for i, position_m in enumerate(positions_m):
-        away = np.flatnonzero(np.linalg.norm(positions_m[:i] - position_m, axis=1) >= step_m)
-        if len(away):
-            last[i] = away[-1]
+    asked = np.flatnonzero(instants)
+    away = distances_m(positions_m, positions_m[asked, None]) >= step_m
+    away &= np.arange(len(positions_m)) < asked[:, None]
+    latest = len(positions_m) - 1 - np.argmax(away[:, ::-1], axis=1)
+    last[asked] = np.where(away.any(axis=1), latest, -1)
     return last
 
 

@@ -58,7 +58,7 @@ def _end_pose(track: ObjectTrack, frames: Sequence[ObjectsSample]) -> ObjectPose
     quaternion = next(quaternions, None) if track.seen[-1] else None
     return ObjectPose(
         frame="camera",
-        position_m=(track.end_m() - track.depth_shift_m).tolist(),
+        position_m=(track.end_m - track.depth_shift_m).tolist(),
         quaternion_xyzw=None if quaternion is None else quaternion.tolist(),
     )
 

@@ -134,7 +134,17 @@ def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: floa
     here = np.arange(len(positions_m))
     earliest = np.searchsorted(stamps_ns, stamps_ns - within_ns)
     window = earliest[:, None] + np.arange((here - earliest).max() + 1)
-    away = np.linalg.norm(positions_m[np.minimum(window, here[:, None])] - positions_m[:, None], axis=2)
+    away = distances_m(positions_m[:, None], positions_m[np.minimum(window, here[:, None])])
     far = (away >= FURTHEST_SHARE * away.max(axis=1, keepdims=True)) & (window <= here[:, None])
     last: Indices = window[here, far.shape[1] - 1 - np.argmax(far[:, ::-1], axis=1)]
     return last
+
+
+def distances_m(points_m: Array, others_m: Array) -> Array:
+    """Return the distances between points (…, 3) and others, which broadcast to each other.
+
+    An axis at a time, since NumPy takes several times as long to sum over an axis of three.
+    """
+    x, y, z = (points_m[..., axis] - others_m[..., axis] for axis in range(3))
+    distances: Array = np.sqrt(x * x + y * y + z * z)
+    return distances

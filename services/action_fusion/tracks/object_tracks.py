@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -59,31 +60,39 @@ class ObjectTrack:
 
         None where the object did not get `moved_m` away, or does not end nearer to the start than to that position.
         """
+        return None if self._furthest is None or self._furthest[1] < moved_m else self._furthest[0]
+
+    @cached_property
+    def _furthest(self) -> tuple[int, float] | None:
+        """Index and distance of the position furthest from the start (m), where the object came back from it."""
         inside = np.flatnonzero(self.stamps_ns >= 0)
         if len(inside) < SETTLED_SAMPLES:
             return None
-        start_m, end_m, positions_m = self._start_m(), self.end_m(), self.positions_m[inside]
+        positions_m = self.positions_m[inside]
         settled_m = np.median(sliding_window_view(positions_m, SETTLED_SAMPLES, axis=0), axis=-1)
-        away_m = np.linalg.norm(settled_m - start_m, axis=1)
+        away_m = np.linalg.norm(settled_m - self._start_m, axis=1)
         furthest = int(np.argmax(away_m))
-        came_back = np.linalg.norm(end_m - start_m) < np.linalg.norm(end_m - settled_m[furthest])
-        clear = away_m[furthest] >= max(moved_m, TURN_TO_NOISE * noise_m(positions_m))
-        return int(inside[furthest + SETTLED_SAMPLES // 2]) if came_back and clear else None
+        back_m = np.linalg.norm(self.end_m - settled_m[furthest])
+        came_back = np.linalg.norm(self.end_m - self._start_m) < back_m
+        if not came_back or away_m[furthest] < TURN_TO_NOISE * noise_m(positions_m):
+            return None
+        return int(inside[furthest + SETTLED_SAMPLES // 2]), float(away_m[furthest])
 
     def displacement_m(self, moved_m: float) -> Array:
         """Measure the displacement (3,) from the segment's start to the turn or, without one, the end; camera frame."""
         index = self.turn(moved_m)
         half = SETTLED_SAMPLES // 2
-        reached_m = self.end_m() if index is None else _median(self.positions_m[index - half : index + half + 1])
-        displacement_m: Array = reached_m - self._start_m()
+        reached_m = self.end_m if index is None else _median(self.positions_m[index - half : index + half + 1])
+        displacement_m: Array = reached_m - self._start_m
         return displacement_m
 
     def is_displaced(self, moved_m: float) -> bool:
         """Whether the object is displaced by `moved_m` or more."""
         return float(np.linalg.norm(self.displacement_m(moved_m))) >= moved_m
 
+    @cached_property
     def end_m(self) -> Array:
-        """Estimate the last position (3,): the median of the last sightings or, if occluded, the mean of the rest."""
+        """The last position (3,): the median of the last sightings or, if occluded, the mean of the rest."""
         latest = self.stamps_ns >= self.stamps_ns[-1] - SETTLED_NS
         if self.seen[-1]:
             unseen = np.flatnonzero(~self.seen)
@@ -94,8 +103,9 @@ class ObjectTrack:
         rest_m: Array = self.positions_m[before[-1] + 1 if len(before) else 0 :].mean(axis=0)
         return rest_m
 
+    @cached_property
     def _start_m(self) -> Array:
-        """Estimate the position (3,) at the segment's start, by the sightings around it."""
+        """The position (3,) at the segment's start, by the sightings around it."""
         apart_ns = np.abs(self.stamps_ns[self.seen])
         nearest = np.argsort(apart_ns, kind="stable")[:SETTLED_SAMPLES]
         around = nearest[apart_ns[nearest] <= SETTLED_NS]
