@@ -5,6 +5,7 @@ on. Few people show little of that, a single one nothing. Therefore each estimat
 of other people's actions (`som_classifier.presets.Prior`), which counts as much as `Prior.people` further people.
 """
 
+import math
 from collections import defaultdict
 from collections.abc import Sequence
 from statistics import median
@@ -27,6 +28,8 @@ LEAST_MOVEMENT_SHARE = 0.5
 most one in a hundred moves less, and in most of them one in 250; see `benchmarks.recognition.stillness`."""
 USUAL_SHARE = 0.99
 """Share of true instances in which legs and trunk move no more than is expected of the action."""
+LEAST_ABOVE = math.log(2.0)
+"""Legs or a trunk may always move twice as much: people who all stand still show nothing of how others move."""
 
 
 def inverse_temperatures(
@@ -112,8 +115,8 @@ def body_movement(samples: Sequence[SegmentSample], targets: Indices, prior: Pri
     usual = [moved[targets == target].mean(axis=0).tolist() for target in range(targets.max() + 1)]
     expected = np.full(len(PARTS), prior.movement_above)
     shown = np.quantile(above, USUAL_SHARE, axis=0) if above else expected
-    most_above = averaged_with_prior(shown, expected, prior, people).tolist()
-    return BodyMovement(usual, most_above, least_movement_m(samples))
+    most_above = np.maximum(averaged_with_prior(shown, expected, prior, people), LEAST_ABOVE)
+    return BodyMovement(usual, most_above.tolist(), least_movement_m(samples))
 
 
 def averaged_with_prior(estimate: Any, expected: Any, prior: Prior, people: int) -> Any:

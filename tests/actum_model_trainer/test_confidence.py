@@ -155,3 +155,9 @@ def test_by_how_much_more_they_move_is_shown_by_other_people_and_from_one_person
     assert body_movement(samples, targets, PRIOR, 2).most_above == pytest.approx([expected] * 2, rel=1e-3)
     alone = [swaying("1", 0.4)] * 3
     assert body_movement(alone, targets, PRIOR, 3).most_above == [PRIOR.movement_above] * 2, "nobody beside another"
+
+
+def test_people_who_all_stand_still_may_move_twice_as_much() -> None:
+    samples = [swaying(str(person), 0.0) for person in range(20)]
+    body = body_movement(samples, np.zeros(20, dtype=np.intp), PRIOR, 20)
+    assert body.most_above == pytest.approx([np.log(2)] * 2)
