@@ -50,7 +50,7 @@ def pyramid_model(**changes: object) -> PyramidModel:
         "concept_contrast": 2.0, "gains": [4.0, 8.0], "verification": [10.0, -3.0],
         "least_likeness": 0.2, "least_found_likeness": 0.3, "opinion_weight": 0.5,
         "usual_log_errors": [-2.5, -2.0],
-        "usual_movements": [[-3.0, -3.5], [-3.0, -3.0]], "most_movement_above": [1.0, 1.0],
+        "usual_movements": [[-3.0, -3.5], [-3.0, -3.0]], "most_movement_above": [1.0, 1.0], "least_movement_m": 0.0,
     }  # fmt: skip
     metadata = PyramidMetadata.model_validate(PROVENANCE | about | changes)
     rng = np.random.default_rng(0)

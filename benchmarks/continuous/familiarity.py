@@ -60,5 +60,7 @@ def _bins(bench: Bench, people: Sequence[Fold]) -> list[ConfidenceBin]:
 
 def _row(name: str, bins: Sequence[ConfidenceBin]) -> list[str]:
     count = sum(each.n for each in bins)
+    if not count:
+        return [name, "0", "–", "–", "–"]
     right, said = sum(each.correct for each in bins), sum(each.n * each.confidence for each in bins)
     return [name, str(count), percent(right / count), percent(said / count), f"{calibration_error(bins):.3f}"]

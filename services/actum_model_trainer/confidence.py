@@ -1,8 +1,9 @@
 """Calibration of a model: inverse temperatures of its confidence, and how much people move in an action.
 
-The first two are estimated on cross-validated scores, which show how well the model does on people it was not trained
-on. Few people show little of that, a single one nothing. Therefore each estimate is averaged with the value for models
-of other people's actions (`som_classifier.presets.Prior`), which counts as much as `Prior.people` further people.
+Inverse temperatures are estimated on cross-validated scores, which show how well the model does on people it was not
+trained on. Few people show little of that, a single one nothing. Therefore each estimate is averaged with the value for
+models of other people's actions (`som_classifier.presets.Prior`), which counts as much as `Prior.people` further
+people.
 """
 
 import math
@@ -13,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from actum.arrays import Floats, Indices
+from actum.arrays import Array, Floats, Indices
+from actum.limits import MAX_COORDINATE_M
 from actum_model_trainer.discriminants import FittedStage
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
-from som_classifier.body_movement import PARTS, BodyMovement, log_movements
+from som_classifier.body_movement import BodyMovement, log_movements
 from som_classifier.first_layer import FirstMaps
 from som_classifier.kinematics import averaged, movement_m
 from som_classifier.presets import Prior
@@ -97,8 +99,9 @@ def least_movement_m(samples: Sequence[SegmentSample]) -> float:
 def body_movement(samples: Sequence[SegmentSample], targets: Indices, prior: Prior, people: int) -> BodyMovement:
     """Return how much people move in each action.
 
-    By how much more legs and trunk hardly ever move is a quantile over the samples, each beside the mean of its action
-    by other people, averaged with the prior's.
+    How far legs and trunk may move above that is a quantile over the samples, each beside the mean of its action by
+    other people, averaged with the prior's, and at least `LEAST_ABOVE`. A part that no sample of an action shows may
+    move as it likes.
 
     Args:
         samples: of all actions.
@@ -110,13 +113,25 @@ def body_movement(samples: Sequence[SegmentSample], targets: Indices, prior: Pri
     who = np.array([each.person for each in samples])
     above = []
     for own, target, person in zip(moved, targets, who, strict=True):
-        others = moved[(targets == target) & (who != person)]
-        above += [own - others.mean(axis=0)] if len(others) else []
-    usual = [moved[targets == target].mean(axis=0).tolist() for target in range(targets.max() + 1)]
-    expected = np.full(len(PARTS), prior.movement_above)
-    shown = np.quantile(above, USUAL_SHARE, axis=0) if above else expected
-    most_above = np.maximum(averaged_with_prior(shown, expected, prior, people), LEAST_ABOVE)
-    return BodyMovement(usual, most_above.tolist(), least_movement_m(samples))
+        above.append(own - _means(moved[(targets == target) & (who != person)]))
+    usual = [_means(moved[targets == target]) for target in range(targets.max() + 1)]
+    shown = np.array([_quantile(of_part, prior.movement_above) for of_part in np.transpose(above)])
+    most_above = np.maximum(averaged_with_prior(shown, prior.movement_above, prior, people), LEAST_ABOVE)
+    anything = math.log(MAX_COORDINATE_M)
+    return BodyMovement(np.nan_to_num(usual, nan=anything).tolist(), most_above.tolist(), least_movement_m(samples))
+
+
+def _means(rows: Array) -> Array:
+    """Return the mean of each column over the rows (n, 2) that have it, NaN where none has."""
+    known = ~np.isnan(rows)
+    sums = np.where(known, rows, 0.0).sum(axis=0)
+    means: Array = np.divide(sums, known.sum(axis=0), out=np.full(rows.shape[1], np.nan), where=known.any(axis=0))
+    return means
+
+
+def _quantile(above: Array, otherwise: float) -> float:
+    known = above[~np.isnan(above)]
+    return float(np.quantile(known, USUAL_SHARE)) if len(known) else otherwise
 
 
 def averaged_with_prior(estimate: Any, expected: Any, prior: Prior, people: int) -> Any:

@@ -44,7 +44,7 @@ class Taught:
         targets: (n,), the action of each sample, as its number among the labels.
         mirrors: whether an action of the left arm is read as its mirror image.
         augmented: the variants of each sample, the one as measured first.
-        rng: goes on drawing.
+        rng: as it is after the variants were drawn.
     """
 
     samples: Sequence[SegmentSample]
@@ -88,7 +88,11 @@ def train_above(
     seed: int,
     progress: Progress,
 ) -> PyramidModel:
-    """Train all layers but the first maps."""
+    """Train all layers but the first maps.
+
+    Raises:
+        TrainingError: all samples move alike.
+    """
     samples, folds = taught.samples, folds_of(taught.samples)
     pooling = Pooling(first, Pyramid(preset.levels, preset.overlap), taught.mirrors)
     pooled = pooling.vectors(samples, taught.augmented, preset.stages)

@@ -50,11 +50,17 @@ def update(
 ) -> PyramidModel:
     """Train the layers above a model's maps anew, on samples of the same actions; its maps and its search stay.
 
-    So it finds the same segments as before: only what they are called may change, and how like that they are.
+    So it finds the same segments as before: only what they are called may change, and how like that they are. What the
+    search reads is pooled as the model does, whatever the preset says.
+
+    Raises:
+        TrainingError: fewer than two actions among the samples.
     """
-    taught = Taught.of(samples, model.metadata.mirrors, preset, seed)
-    above = train_above(model.first, taught, background, preset, seed, progress)
-    metadata = above.metadata.model_copy(update={"spotting": model.metadata.spotting})
+    known = model.metadata
+    as_known = replace(preset, levels=tuple(known.levels), overlap=known.overlap)
+    taught = Taught.of(samples, known.mirrors, as_known, seed)
+    above = train_above(model.first, taught, background, as_known, seed, progress)
+    metadata = above.metadata.model_copy(update={"spotting": known.spotting, "updated_from": model.id})
     return replace(above, heads=model.heads, metadata=metadata)
 
 

@@ -81,13 +81,15 @@ def update(
 ) -> Model:
     """Train a model on samples that include corrections, so that it finds the same segments as before.
 
-    A model of another kind than the preset's, of a kind that cannot be updated, or of other actions is trained anew.
+    A model of another kind than the preset's, of a kind that cannot be updated, of other actions or without a search is
+    trained anew. The background is that which comes with actum.
 
     Raises:
         TrainingError: fewer than two actions among the samples.
     """
     updating = UPDATES.get(preset.kind)
-    if updating is None or model.metadata.kind != preset.kind or model.labels != actions_of(samples):
+    alike = model.metadata.kind == preset.kind and model.labels == actions_of(samples)
+    if updating is None or not alike or model.spotting is None:
         return train_to_spot(samples, streams, preset, seed, progress)
     with threadpool_limits(1, user_api="blas"):
         return updating(model, samples, [*shipped(), *counterexamples(streams)], preset, seed, progress)

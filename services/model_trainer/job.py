@@ -29,7 +29,7 @@ from actum_model_trainer.training import TrainingError, train_to_spot, update
 from model_trainer.set_evaluation import evaluate_set
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
-from som_classifier.presets import DEFAULT, PRESETS
+from som_classifier.presets import PRESETS
 
 PRINT_S = 0.1
 """Shortest time between two lines of one stage (s): the page shows no more."""
@@ -81,7 +81,7 @@ def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
     if before is None:
         model = train_to_spot(*learnt, PRESETS[arguments.preset], arguments.seed, progress)
     else:
-        preset = PRESETS.get(before.metadata.preset, DEFAULT)
+        preset = PRESETS.get(before.metadata.preset, PRESETS[arguments.preset])
         model = update(before, *learnt, preset, arguments.seed, progress)
     model.save(arguments.folder / MODEL)
     answers = model.metadata.held_out_answers

@@ -140,9 +140,10 @@ class Train(OfSet):
     """How to train."""
 
     preset: Annotated[str, Field(max_length=100)] = DEFAULT.name
-    """The training parameters, by name; see `actum train --help`. A model that is updated keeps its own."""
+    """The training parameters, by name; see `actum train --help`. A model that is updated keeps its own, if known."""
     update: Id | None = None
-    """The `id` of a model that is to find the same segments, and learn anew what these are; null trains everything."""
+    """The `id` of a model that is to find the same segments, and learn anew what these are. Null, or where the set has
+    other actions than the model: everything is trained anew."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """The same seed and examples make the same model."""
 

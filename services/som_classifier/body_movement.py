@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array
+from actum.arrays import Array, Mask
 from actum.skeletons import INDEX
 from som_classifier.model import Recognition
 
@@ -22,17 +22,19 @@ LEAST_M = 0.03
 
 
 def log_movements(means: Array) -> Array:
-    """Return the logarithm of how much each part moves in a segment, (2,).
+    """Return the logarithm of how much each part moves in a segment, (2,), NaN where none of its joints is seen.
 
     A part's movement is the standard deviation of its joints' positions in the upright frame (m).
 
     Args:
         means: (intervals, 15, 3), as `averaged` returns them.
     """
-    known = np.where(np.isnan(means).all(axis=0), 0.0, means)
+    seen: Mask = np.asarray(~np.isnan(means[:, :, 0]).all(axis=0))
+    known = np.where(seen[:, None], means, 0.0)
     variances_m2 = np.nanvar(known, axis=0) if np.isnan(known).any() else known.var(axis=0)
     deviations_m = np.sqrt(variances_m2.sum(axis=1))
-    return np.log([max(float(deviations_m[list(part)].mean()), LEAST_M) for part in PARTS])
+    of_parts = [deviations_m[[joint for joint in part if seen[joint]]] for part in PARTS]
+    return np.log([max(float(each.mean()), LEAST_M) if len(each) else np.nan for each in of_parts])
 
 
 class Evidence(NamedTuple):
@@ -56,9 +58,9 @@ class BodyMovement:
     """How much people move in each action.
 
     Attributes:
-        usual: (actions, 2), mean logarithm of how much legs and trunk move.
-        most_above: (2,), by how much more they hardly ever move in a true instance.
-        least_m: less than this moves nobody who acts.
+        usual: (actions, 2), mean logarithm of how much legs and trunk move (m).
+        most_above: (2,), how far that of a segment may lie above the usual; a true instance's hardly ever lies higher.
+        least_m: everybody who acts moves at least so far.
     """
 
     usual: Sequence[Sequence[float]]
@@ -66,13 +68,14 @@ class BodyMovement:
     least_m: float
 
     def doubted(self, recognition: Recognition, action: int, evidence: Evidence) -> Recognition:
-        """Return the answer as it is or, where the person moves otherwise than in the action (its index), as less sure.
+        """Return the answer as it is or, where the person moves otherwise than in the action (its index), as doubtful.
 
-        A segment that moves less than any action is unknown. Scores alone do not show that: every action begins and
-        ends at rest, so that rest scores like a part of one. Nor do they show legs or a trunk that move far more.
+        A segment that moves less than any action is unknown, and as much less sure. Scores alone do not show that:
+        every action begins and ends at rest, so that rest scores like a part of one. Nor do they show legs or a trunk
+        that move far more: these lower the familiarity. What is not seen raises no doubt.
         """
         still = 1.0 if evidence.moved_m >= self.least_m else evidence.moved_m / self.least_m
-        above = float((evidence.moved - self.usual[action] - self.most_above).max())
+        above = float(np.nan_to_num(evidence.moved - self.usual[action] - self.most_above).max())
         if still == 1.0 and above <= 0.0:
             return recognition
         return replace(

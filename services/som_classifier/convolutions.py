@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from actum.arrays import Array, Mask
 
 INSTANTS = 32
-"""Instants that a segment is resampled to."""
+"""Instants that a segment is resampled to: the bits of the numbers that `_packed` returns."""
 COORDINATES = 45
 """Of the 15 joints."""
 WEIGHTS = 9
@@ -104,7 +104,7 @@ COUNTED = np.stack([_counted(number) for number in range(FILTERS)])
 COUNTS = COUNTED.sum(axis=1, dtype=np.float32)
 """At how many, (FILTERS,)."""
 PACKED = _packed(COUNTED)
-"""The same as bits, (FILTERS,)."""
+"""`COUNTED` as bits, (FILTERS,)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -35,10 +35,10 @@ class PyramidMetadata(ModelMetadata):
         usual_log_errors: for each action, the mean log(d²) of its postures from the map of postures that a person not
             trained on may well reach, d in metres over all joints of a standard body.
         usual_movements: for each action, the mean logarithm of how much legs and trunk move (m).
-        most_movement_above: by how much more legs, and the trunk, hardly ever move in an action.
-        least_movement_m: the least movement of an action: with less a segment may be none of those trained; 0 in files
-            of versions that did not measure it, for which stillness is an action like others.
+        most_movement_above: how far that of a segment may lie above it, for legs and trunk.
+        least_movement_m: how far everybody moves who does one of the actions, at least.
         spotting: of the search for actions without marks; None where the model was not trained for that.
+        updated_from: the id of the model whose maps and search these are; None where they are of this training.
     """
 
     kind: Literal["pyramid"] = "pyramid"
@@ -61,8 +61,9 @@ class PyramidMetadata(ModelMetadata):
     usual_log_errors: list[Finite]
     usual_movements: list[Annotated[list[Finite], Field(min_length=len(PARTS), max_length=len(PARTS))]]
     most_movement_above: Annotated[list[Finite], Field(min_length=len(PARTS), max_length=len(PARTS))]
-    least_movement_m: Annotated[float, Field(ge=0, allow_inf_nan=False)] = 0.0
+    least_movement_m: Annotated[float, Field(ge=0, allow_inf_nan=False)]
     spotting: PyramidSpottingMetadata | None = None
+    updated_from: str | None = None
 
     @property
     def contrasts(self) -> dict[str, float]:

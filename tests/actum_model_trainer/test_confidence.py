@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_trainer.confidence import (
     body_movement,
@@ -161,3 +162,11 @@ def test_people_who_all_stand_still_may_move_twice_as_much() -> None:
     samples = [swaying(str(person), 0.0) for person in range(20)]
     body = body_movement(samples, np.zeros(20, dtype=np.intp), PRIOR, 20)
     assert body.most_above == pytest.approx([np.log(2)] * 2)
+
+
+def test_legs_that_nobody_showed_may_move_as_they_like() -> None:
+    unseen = [swaying(str(person), 0.1) for person in range(3)]
+    for each in unseen:
+        each.postures[:, [INDEX[joint] for joint in ("left_knee", "left_foot", "right_knee", "right_foot")]] = np.nan
+    body = body_movement(unseen, np.zeros(3, dtype=np.intp), PRIOR, 3)
+    assert body.usual[0][0] == pytest.approx(np.log(100)) and body.most_above[0] == pytest.approx(PRIOR.movement_above)

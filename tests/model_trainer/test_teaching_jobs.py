@@ -156,11 +156,11 @@ def test_an_update_changes_what_the_model_says_of_the_segments_that_it_finds_as_
     before = load_model(teacher.folder / f"models/{finish()['result']['model']}.npz")
     span = {"agent": 1, "start_ns": SECOND_NS, "end_ns": 3 * SECOND_NS}
     teacher.act(Stream().repeat(WAVES))
-    teacher.ask("correct", set="kitchen", **span)
+    teacher.ask("correct", set="kitchen", label="wave", person="cleo", **span)
     teacher.ask("train", set="kitchen", update=before.id)
     ended = finish()
     after = load_model(teacher.folder / f"models/{ended['result']['model']}.npz")
-    assert ended["result"]["examples"] == 20
+    assert ended["result"]["examples"] == 21
     assert after.id != before.id and np.array_equal(
         after.arrays["completeness_axes"], before.arrays["completeness_axes"]
     )

@@ -48,12 +48,21 @@ def test_arms_are_no_part_of_it() -> None:
     assert np.exp(moved) == pytest.approx([LEAST_M, LEAST_M])
 
 
-def test_missing_joints_do_not_move() -> None:
-    postures = swaying(("left_foot", "right_foot"), 0.2)
+def test_only_joints_that_are_seen_count() -> None:
+    postures = swaying(LEGS, 0.2)
     postures[:, INDEX["left_foot"]] = np.nan
     postures[::2, INDEX["right_foot"]] = np.nan
     legs, trunk = np.exp(log_movements(averaged(STAMPS_NS, postures)))
-    assert legs == pytest.approx(0.2 / math.sqrt(2) / 4, rel=0.1) and trunk == pytest.approx(LEAST_M)
+    assert legs == pytest.approx(0.2 / math.sqrt(2), rel=0.1) and trunk == pytest.approx(LEAST_M)
+
+
+def test_a_part_that_is_not_seen_raises_no_doubt() -> None:
+    postures = swaying(LEGS, 0.2)
+    postures[:, [INDEX[joint] for joint in LEGS]] = np.nan
+    legs, trunk = log_movements(averaged(STAMPS_NS, postures))
+    assert math.isnan(legs) and np.exp(trunk) == pytest.approx(LEAST_M)
+    assert judged(math.nan, 0.03) is SURE
+    assert judged(math.nan, 0.3).familiarity == pytest.approx(0.8 * 0.12 / 0.3)
 
 
 @given(st.floats(0.01, 0.1), st.floats(0.01, 0.12))

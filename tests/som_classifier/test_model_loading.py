@@ -16,7 +16,6 @@ from handmade import KINDS, model_of, paper_model, pyramid_model
 from som_classifier.convolutions import FILTERS
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
-from som_classifier.pyramid_model import PyramidModel
 
 each_kind = pytest.mark.parametrize("kind", KINDS)
 
@@ -315,15 +314,6 @@ def test_what_is_no_version_is_not_repeated(tmp_path: Path, version: object) -> 
 @each_kind
 def test_metadata_of_later_versions_are_ignored(tmp_path: Path, kind: str) -> None:
     assert load_model(with_metadata(saved(tmp_path, kind), later="field")).labels == ["pull", "push"]
-
-
-def test_a_file_of_a_version_that_did_not_measure_movement_takes_any_for_enough(tmp_path: Path) -> None:
-    path = saved(tmp_path, "pyramid")
-    with np.load(path) as file:
-        about = json.loads(str(file["metadata"]))
-    del about["least_movement_m"]
-    loaded = load_model(altered(path, metadata=np.array(json.dumps(about))))
-    assert isinstance(loaded, PyramidModel) and loaded.metadata.least_movement_m == 0.0
 
 
 @each_kind

@@ -81,7 +81,7 @@ def _misses(pairs: Sequence[Comotion], settings: Settings) -> list[tuple[float, 
 def _closings(hand: HandTrack, pairs: Sequence[Comotion], instants: Mask) -> Array:
     """Measure the share (pairs, n) of the hand's last step by which it came nearer to each object, 0 to 1.
 
-    It is measured at the given instants (n,), and 0 at all others.
+    The share is measured at the given instants (n,), and 0 at all others.
     """
     since = _last_instants_away(hand.positions_m, REACH_STEP_M, instants)
     steps = np.linalg.norm(hand.positions_m - hand.positions_m[since], axis=1)

@@ -47,7 +47,8 @@ SET_HELP = (
     f"change a setting of --preset {PAPER.name}; may be repeated. Settings: axes=upright (one axis is vertical, the "
     "others follow the body smoothly; default) or axes=posture (axes follow the body, computed anew in each frame); "
     "origin=torso (positions are measured from the torso; default) or origin=hips; attention=PART, the body part whose "
-    f"joints are used: {', '.join(ATTENTIONS[1:])} or {MOVING} (the part that moves most; default)"
+    f"joints are used: {', '.join(part for part in ATTENTIONS if part != MOVING)} or {MOVING} (the part that moves "
+    "most; default)"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
