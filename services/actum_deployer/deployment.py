@@ -29,7 +29,7 @@ from actum_deployer.roles import (
 )
 
 ROUTERS_CANNOT = (
-    "A router's credentials cannot be revoked, because clients would still trust its stolen key. To replace a router's "
+    "A router's credentials cannot be revoked, because clients would still trust them. To replace a router's "
     "credentials, delete authority/, run 'actum deploy init' and copy all folders to their machines again"
 )
 """Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""

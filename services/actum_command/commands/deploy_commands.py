@@ -80,8 +80,8 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--images",
             help=(
-                "also send camera images to other hosts; default: images stay on the camera's host, but with "
-                "--open they always cross"
+                "also send camera images to other hosts; with --open they are always sent. Default: images stay on the "
+                "camera's host"
             ),
         ),
     ] = False,
