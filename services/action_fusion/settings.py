@@ -119,15 +119,15 @@ class Settings(ServiceSettings):
         2.0,
         ge=0,
         description=(
-            "an event names several possible objects if the person points at all of them equally well: their angles to "
-            "the pointing arm differ by at most this many degrees"
+            "an event names several possible objects if the person points at them almost equally: the angles between "
+            "the pointing arm and the directions to these objects differ by at most this many degrees"
         ),
     )
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
-            "the result that each action is expected to have on its object, such as lift=lifted,push=pushed. An object "
-            "held during an action listed here is the object of the action, not a tool used on another object"
+            "the result that each action should have on its object, such as lift=lifted,push=pushed. In these actions, "
+            "a held object is never seen as a tool; in all other actions, it can be a tool used on another object"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(

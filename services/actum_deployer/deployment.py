@@ -185,9 +185,9 @@ class Deployment:
         except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
             problem = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
-                f"{folder / FILE} cannot be used ({problem}): correct it rather than delete it, because it lists the "
-                "revoked credentials. If you cannot correct it, delete it and authority/, run 'actum deploy init' and "
-                "copy all folders to their machines again"
+                f"{folder / FILE} cannot be used ({problem}): correct this file. Do not delete it, because it lists "
+                "the revoked credentials. If the file cannot be corrected, delete it and the folder authority/, run "
+                "'actum deploy init' and copy all folders to their machines again"
             ) from None
         return read
 

@@ -56,9 +56,9 @@ def move(take: Take, segment: MarkedSegment, start_ns: int, end_ns: int) -> None
         if moved.mirrored != other.mirrored and moved.shares_frames(other):
             mirrored, plain = (moved, other) if moved.mirrored else (other, moved)
             raise EditError(
-                f"segments {mirrored.segment_id} and {plain.segment_id} would overlap, but left and right are "
-                f"exchanged (mirrored) only in {mirrored.segment_id}: leave time between them, or "
-                f"mirror {plain.segment_id} first"
+                f"segments {mirrored.segment_id} and {plain.segment_id} would overlap, but only "
+                f"{mirrored.segment_id} is mirrored (left and right exchanged): leave time between the two segments, "
+                f"or mirror {plain.segment_id} first"
             )
     _mend(take, [(segment, moved)])
 

@@ -104,7 +104,7 @@ def catalogue(settings: Settings) -> Catalogue:
         return Catalogue((name,), markers, {number: spec.name for number, spec in settings.objects.items()})
     if settings.objects:
         raise SceneFileError(
-            "the settings scene and objects both define which object carries which marker: set only one of the two"
+            "the settings 'scene' and 'objects' both define which object carries which marker: set only one of the two"
         )
     return load(settings.scene)
 

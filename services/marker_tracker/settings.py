@@ -39,9 +39,9 @@ class Settings(ServiceSettings):
     objects: dict[int, ObjectSpec] = Field(
         default_factory=dict,
         description=(
-            "for each marker id, the name of the object that carries the marker and, only if the side length of "
-            'this marker is not --marker-size-m, its side length in metres, such as {"3": {"name": "cup", "size_m": '
-            "0.05}}. Default: each marker is an object of its own"
+            'for each marker id, the name of the object that carries the marker, such as {"3": {"name": "cup"}}. If '
+            "the side length of a marker differs from --marker-size-m, add this length in metres: "
+            '{"3": {"name": "cup", "size_m": 0.05}}. Default: each marker is an object of its own'
         ),
     )
     memory_s: float = Field(

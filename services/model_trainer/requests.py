@@ -26,7 +26,7 @@ def _bytes(data: object) -> object:
         return base64.b64decode(data, validate=True) if isinstance(data, str) else data
     except binascii.Error:
         raise ValueError(
-            "the field data is not valid base64: send base64 text in JSON, or bytes in MessagePack"
+            "the field 'data' is not valid base64: send base64 text in JSON, or bytes in MessagePack"
         ) from None
 
 

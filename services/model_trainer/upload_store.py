@@ -65,8 +65,8 @@ class UploadStore:
         """
         if not (self._folder / name).is_file():
             raise Refusal(
-                f"no file {name!r} was uploaded completely: send it with the command 'upload', its last piece with "
-                "last: true"
+                f"no file {name!r} was uploaded completely: send it with the command 'upload', and set last: true "
+                "in its last piece"
             )
 
     def move(self, name: str, folder: Path) -> Path:

@@ -94,8 +94,8 @@ def marker_camera_of(settings: Settings, start_ns: int) -> MarkerCamera:
     calibration = None if settings.calibration is None else Calibration.load(settings.calibration)
     if calibration is None or calibration.skeleton_from_image is None:
         raise CalibrationError(
-            "the source marker-camera needs the transform to the camera that sees the people: set --calibration "
-            "(ACTUM_CALIBRATION) to a file that 'actum calibrate extrinsics' wrote"
+            "--source marker-camera needs the transform from this camera to the camera that sees the people: set "
+            "--calibration (ACTUM_CALIBRATION) to a file that 'actum calibrate extrinsics' wrote"
         )
     return MarkerCamera(
         lambda: nullcontext(Nobody()),

@@ -30,8 +30,7 @@ class Settings(ServiceSettings):
         None,
         description=(
             "where skeletons and images come from: camera (webcam, URL or video file); marker-camera (a second camera "
-            "that sees only markers, so that it publishes no skeletons); realsense; openni2 (Kinect); recording (the "
-            "files in --path)"
+            "used only for markers, not for skeletons); realsense; openni2 (Kinect); recording (the files in --path)"
         ),
     )
     path: Path | None = Field(

@@ -52,7 +52,7 @@ def _recording(settings: Settings, start_ns: int) -> Source:
     """Build the source of recordings; cameras calibrate their images themselves."""
     if settings.path is None:
         raise SourceError(
-            "the source recording needs --path (ACTUM_PATH): give the recording to play, or a folder of recordings"
+            "--source recording needs --path (ACTUM_PATH): give the recording to play, or a folder of recordings"
         )
     played = RecordingSource(settings.path, settings.sensor)
     source: Source = MappedSource(played, with_session_of(f"{start_ns:x}"))

@@ -39,7 +39,7 @@ def test_the_flags_say_the_same(picked: Segmentation) -> None:
     [
         (
             'model = "m.npz"\nsensor = "left"\nshortest_pause_s = 1.0\n',
-            "also sets model, sensor, which overwriting the",
+            "also sets model, sensor, which would be lost",
         ),
         ("no toml", "is not a TOML file"),
     ],

@@ -13,8 +13,7 @@ def errors() -> set[str]:
 
 def test_errors_of_services_of_commands_and_of_doctor_are_among_them(errors: set[str]) -> None:
     assert (
-        "the source recording needs --path (ACTUM_PATH): give the recording to play, or a folder of recordings"
-        in errors
+        "--source recording needs --path (ACTUM_PATH): give the recording to play, or a folder of recordings" in errors
     )
     assert "{file} is a folder: give the name of a file" in errors
     assert "{name} does not answer queries on its info key: if this persists, restart {name}" in errors

@@ -77,8 +77,8 @@ def intrinsics(
     """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the calibration board.
 
     Print the board with 'actum markers --board'. Do this once per camera, for exact positions of people and objects.
-    The command writes a calibration file, which the sensor gateway reads with --calibration, and in the same folder a
-    picture that shows in which parts of the image the board was seen.
+    The command writes a calibration file, which the sensor gateway reads with --calibration. To the same folder, the
+    command writes a picture that shows in which parts of the image the board was seen.
     """
     if live == bool(images):
         fail("give either pictures of the board, or --live to take the pictures now")

@@ -150,10 +150,10 @@ def rotate(
 ) -> None:
     """Renew all certificates and keys, before they expire or after some were lost.
 
-    Afterwards copy the folder credentials/ of each host, and the folders in people/, to their machines again; services
-    read the new certificates without a restart. If credentials were lost or stolen, also name their folder with
-    --revoke, and copy router.json5 to each host: a router then refuses the old credentials. A router in a container has
-    to be restarted for this.
+    If credentials were lost or stolen, name their folder with --revoke, so that the routers refuse the old ones.
+    Afterwards copy the folder credentials/ of each host, and the folders in people/, to their machines again. Services
+    read the new certificates without a restart. With --revoke, also copy router.json5 to each host; then restart each
+    router that runs in a container.
     """
     with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment

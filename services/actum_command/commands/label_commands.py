@@ -108,7 +108,7 @@ def move(
 
 @app.command("delete")
 def delete(file: RecordingFile, name: SegmentName) -> None:
-    """Delete a segment: its start and end marks, the classifier's answers to it, and the person's frames between them.
+    """Delete a segment: its start and end marks, the classifier's answers to it, and the person's frames during it.
 
     These frames stay if the segment has no label, or if another labelled segment of the same person contains them.
     """
@@ -165,7 +165,7 @@ def cut(
     ],
     label: Label,
 ) -> None:
-    """Find the repetitions of one action in a recording again, and label each repetition.
+    """Search a recording again for the repetitions of one action, and label each repetition.
 
     Use this command if 'actum record --times' miscounted. The repetitions that were found before are replaced; segments
     that were marked or moved by hand stay.

@@ -84,8 +84,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--finish",
             help=(
-                "record nothing, but turn the unfinished file OUTPUT.part, which a killed process or a full disk left, "
-                "into the recording OUTPUT"
+                "record nothing; turn the unfinished file OUTPUT.part into the recording OUTPUT. Such a file is left "
+                "if the process was killed or the disk was full"
             ),
         ),
     ] = False,

@@ -84,7 +84,7 @@ def simulate(
 def scene() -> None:
     """Publish start and end marks for the actions of the simulated scene, until Ctrl-C.
 
-    Use this command to try recognition with marks if the scene was started without 'actum up --marked'.
+    Use this command to try recognition with marks if 'actum up' was started without --marked.
     """
     with connect_whenever() as client:
         mark_truth(client, stop_on_signals())

@@ -44,16 +44,17 @@ PRESET_HELP = (
     f"{DEFAULT.name} is more accurate"
 )
 SET_HELP = (
-    f"change a setting of --preset {PAPER.name}; may be repeated. Settings: axes=upright (one axis is vertical, the "
-    "others follow the body smoothly; default) or axes=posture (axes follow the body, computed anew in each frame); "
+    f"change a setting of --preset {PAPER.name}; may be repeated. Settings: axes=upright (of the person's coordinate "
+    "axes, one is vertical and the others turn smoothly with the body; default) or axes=posture (all axes turn with "
+    "the body, computed anew in each frame); "
     "origin=torso (positions are measured from the torso; default) or origin=hips; attention=PART, the body part whose "
     f"joints are used: {', '.join(part for part in ATTENTIONS if part != MOVING)} or {MOVING} (the part that moves "
     "most; default)"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
-    "movement that is none of the actions, so that the model learns what to ignore: shipped (half an hour of simulated "
-    "people, comes with actum; default), none, or recordings (.mcap) or folders of them; may be repeated"
+    "examples of movement that the model learns to ignore. 'shipped' (default): half an hour of simulated people, "
+    "supplied with actum; 'none': no examples; otherwise a recording (.mcap) or a folder of recordings. May be repeated"
 )
 SHIPPED, NONE = "shipped", "none"
 ONLY_LEFT_OUT = "used only with --leave-one-person-out: "

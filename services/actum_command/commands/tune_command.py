@@ -117,8 +117,8 @@ def refuse_other_settings(file: Path) -> None:
         fail(str(error))
     if others := sorted(held.keys() - set(SEARCH_SETTINGS)):
         fail(
-            f"{file} also sets {', '.join(others)}, which overwriting the file would delete: write to another file, "
-            f"then copy the new lines into {file}"
+            f"{file} also sets {', '.join(others)}, which would be lost if the file were overwritten: write to "
+            f"another file, then copy the new lines into {file}"
         )
 
 

@@ -143,8 +143,9 @@ def _remarks(name: str, status: Status) -> Iterator[str]:
         )
     if ignored := status.counts.get(MARKS_IGNORED):
         yield (
-            f"{name} has rejected {ignored} start and end marks of actions while its setting segments was auto: to "
-            "accept marks, set it to both on the page under Parameters, or start with --segments both"
+            f"{name} has rejected {ignored} start and end marks of actions, because its setting 'segments' was "
+            "'auto': to accept marks, set 'segments' to 'both' on the page under Parameters, or start with "
+            "--segments both"
         )
     yield from (f"{name}: {remark}" for remark in State.remarks(status.state))
 

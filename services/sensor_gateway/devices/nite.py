@@ -52,8 +52,8 @@ def nite() -> Any | None:
         nite2.initialize(folders)
     except InitializationError as error:
         log.warning(
-            "NiTE (body tracking in depth images) cannot be started, so people are found in the colour images "
-            "instead: %s",
+            "NiTE (body tracking in depth images) cannot be started (%s), so people are found in the colour "
+            "images instead",
             error,
         )
         return None

@@ -132,8 +132,8 @@ class Streams:
             self.device.set_depth_color_sync_enabled(True)
         else:
             log.warning(
-                "the camera driver does not align depth images with colour images, so thin limbs may get the depth of "
-                "the background"
+                "the camera driver does not align depth images with colour images, so the joints of thin limbs may be "
+                "placed as far away as the background"
             )
 
     def _is(self, stream: Any, pixel_format: Any) -> bool:

@@ -131,10 +131,10 @@ def _with_user(settings: ServiceSettings, user: str | None) -> str:
     """Say why a router whose certificate fits opens no session."""
     login = login_values(settings.credentials) if settings.credentials else {}
     name = login.get(f"{LOGIN}/user", user)
-    who = f"refuses user {name} or its password" if name else "requires a user name and a password"
+    who = f"rejects the login of user {name}" if name else "requires a user name and a password"
     return (
-        f"the TLS connection works, so either the router {who}, or the router is frozen: copy the credentials folder "
-        "of this program again, or restart the router"
+        f"the TLS connection works. Either the router {who}: copy the credentials folder of this program again. "
+        "Or the router is frozen: restart the router"
     )
 
 

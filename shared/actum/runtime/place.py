@@ -147,7 +147,7 @@ class Place:
         if holder.instance not in silent:
             log.warning(
                 "another instance of this service, %s, is registered but does not answer: waiting until the router "
-                "drops it",
+                "removes this registration",
                 holder.instance,
             )
             silent.add(holder.instance)
@@ -200,7 +200,7 @@ class Place:
         host = f" on {info.host}" if info and info.host else ""
         other = f"another {self._service} already runs for sensor {self._settings.sensor}: {holder.instance}{host}"
         if self._settings.take_over:
-            return f"{other}, which does not stop by itself: stop that instance on its host"
+            return f"{other}. That instance was asked to stop, but still runs: stop it on its host"
         return (
             f"{other}. Two instances would answer everything twice, so this one ({self._settings.instance}) ends. "
             "Stop the other instance, replace it with --take-over (ACTUM_TAKE_OVER=1), or name another sensor "

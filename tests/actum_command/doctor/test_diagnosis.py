@@ -247,8 +247,8 @@ def test_what_was_found_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_marks_that_are_not_used_are_told() -> None:
     (remark,) = examined(counts={"marks_ignored": 4}).remarks
     assert remark == (
-        "som_classifier has rejected 4 start and end marks of actions while its setting segments was auto: "
-        "to accept marks, set it to both on the page under Parameters, or start with --segments both"
+        "som_classifier has rejected 4 start and end marks of actions, because its setting 'segments' was 'auto': "
+        "to accept marks, set 'segments' to 'both' on the page under Parameters, or start with --segments both"
     )
 
 
