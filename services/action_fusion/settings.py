@@ -119,8 +119,8 @@ class Settings(ServiceSettings):
         2.0,
         ge=0,
         description=(
-            "an event names several possible objects if the person points at them almost equally: the angles between "
-            "the pointing arm and the directions to these objects differ by at most this many degrees"
+            "an event also names an object as possible if its angle from the pointing arm is at most this many degrees "
+            "larger than that of the best object"
         ),
     )
     expected_outcomes: dict[str, str] = Field(

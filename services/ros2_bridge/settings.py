@@ -45,8 +45,8 @@ class Settings(ServiceSettings):
         min_length=1,
         description=(
             "name of the camera's optical frame, if your robot's tf tree already contains this frame; the bridge then "
-            "publishes nothing on /tf_static. Default: the bridge publishes the frames SENSOR_link and, below it, "
-            "SENSOR_optical_frame on /tf_static, such as kinect0_link"
+            "publishes nothing on /tf_static. Default: the bridge publishes SENSOR_link (such as kinect0_link) and, "
+            "below it, SENSOR_optical_frame on /tf_static"
         ),
     )
 

@@ -142,9 +142,9 @@ class ServiceSettings(BaseSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the service stores the last actions or events that it published, to publish them "
-            "again after a restart. Only som_classifier and action_fusion use this folder; all other services ignore "
-            "it. Default: no folder, so nothing is stored"
+            "a folder in which som_classifier and action_fusion store the last actions and events that they published, "
+            "to publish them again after a restart; all other services ignore it. Default: no folder, so nothing is "
+            "stored"
         ),
     )
     health_file: Path | None = Field(
