@@ -102,7 +102,7 @@ def _counted(filter_number: int) -> Mask:
 COUNTED = np.stack([_counted(number) for number in range(FILTERS)])
 """At which instants each filter counts, (FILTERS, INSTANTS): every other one only where it lies within the series."""
 COUNTS = COUNTED.sum(axis=1, dtype=np.float32)
-"""At how many, (FILTERS,)."""
+"""At how many instants each filter counts, (FILTERS,)."""
 PACKED = _packed(COUNTED)
 """`COUNTED` as bits, (FILTERS,)."""
 
