@@ -11,6 +11,7 @@ import tempfile
 from pathlib import Path
 
 from benchmarks.latency import running, stopwatch
+from benchmarks.latency.decision import OBJECTS_EACH, PEOPLE, decisions_ms, inputs
 from benchmarks.latency.scene import payload_sizes, stream
 from benchmarks.throughput import frames_per_second
 from rich.console import Console
@@ -46,6 +47,10 @@ def main() -> None:
         "preprocessor + classifier on one core, codec included, a partial estimate in every frame of a segment:"
     )
     console.print(f"{rate:,.0f} frames/s (aim: 1,500)")
+    took_ms, events = decisions_ms(list(inputs()))
+    p50, _, p99 = stopwatch.percentiles(took_ms)
+    console.print(f"fusion's decision, {PEOPLE} people, {PEOPLE * OBJECTS_EACH} objects, {len(events)} events:")
+    console.print(f"{p50:.1f} ms, p99 {p99:.1f} ms (aim: 2)")
 
 
 def trained(folder: Path) -> Model:

@@ -1,6 +1,6 @@
 """Fuse an action, its actor's postures and the objects' positions to one event."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from action_fusion.choice.cues import choose
 from action_fusion.choice.evidence import NO_HAND, NO_OBJECT, Choice, gather
-from action_fusion.intake.buffers import LOOK_BACK_NS
+from action_fusion.intake.buffers import LOOK_BACK_NS, Hands, Sightings
 from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
 from action_fusion.outcome.acted_object import acted_object
 from action_fusion.outcome.displacement import described
@@ -18,6 +18,7 @@ from action_fusion.tracks.depth_alignment import aligned_in_depth
 from action_fusion.tracks.hand_tracks import HandTracks, hand_tracks
 from action_fusion.tracks.object_tracks import ObjectTrack, object_tracks
 from action_fusion.tracks.occlusion import fill_occlusions
+from actum.arrays import median
 from actum.messages import Action, Event, HeldObject
 
 COPIED = (
@@ -30,7 +31,8 @@ COPIED = (
 def fuse(
     action: Action,
     postures: Sequence[PostureSample],
-    others: Sequence[Sequence[PostureSample]],
+    hands: Sequence[Hands],
+    sightings: Mapping[int, Sightings],
     frames: Sequence[ObjectsSample],
     settings: Settings,
 ) -> Event:
@@ -39,15 +41,17 @@ def fuse(
     Args:
         action: a valid final action with label and end.
         postures: the acting agent's samples, from some time before the segment's start up to its end.
-        others: the posture samples of each other agent in the image, over the same time.
+        hands: those of this agent, then of each other one in the image, over the same time.
+        sightings: where each object was, by its number, over the same time.
         frames: the samples of objects, over the same time.
         settings: thresholds and labels.
     """
     start_ns = action.start_ns
     acting = [sample for sample in postures if sample.stamp_ns >= start_ns]
-    hands = hand_tracks(actor_of(postures, start_ns), [actor_of(other, start_ns) for other in others])
+    tracked = hand_tracks(hands[0], hands[1:])
     actor = actor_of(acting, start_ns)
-    evidence = gather(action, actor, hands, _tracks(action, frames, hands, actor, settings), settings)
+    objects = object_tracks(sightings, frames)
+    evidence = gather(action, actor, tracked, _tracks(action, objects, tracked, actor, settings), settings)
     choice = choose(evidence)
     likely = [acted_object(track, choice, evidence, frames) for track in choice.likely]
     described_outcome = described(choice.track, evidence)
@@ -87,12 +91,12 @@ def rejected(action: Action, reason: str) -> Event:
 
 
 def _tracks(
-    action: Action, frames: Sequence[ObjectsSample], hands: HandTracks, actor: Actor, settings: Settings
+    action: Action, objects: Sequence[ObjectTrack], hands: HandTracks, actor: Actor, settings: Settings
 ) -> list[ObjectTrack]:
-    """Track the objects present in the segment and fill occlusions; the paper's measure uses sightings only."""
+    """Fill occlusions of the objects present in the segment; the paper's measure uses sightings only."""
     assert action.end_ns is not None
-    present = [t for t in object_tracks(frames, action.start_ns) if t.stamps_ns[-1] >= -LOOK_BACK_NS]
-    depth_std_m = float(np.median([body.depth_std_m for body in actor.bodies])) if actor.bodies else 0.0
+    present = [track for track in objects if track.stamps_ns[-1] >= -LOOK_BACK_NS]
+    depth_std_m = float(median(np.array([body.depth_std_m for body in actor.bodies]))) if actor.bodies else 0.0
     tracks = aligned_in_depth(present, hands.own.values(), depth_std_m, settings)
     occluding = [] if settings.measure == "proximity" else hands.everyones
     return fill_occlusions(tracks, occluding, action.end_ns - action.start_ns, settings)

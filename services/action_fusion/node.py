@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from action_fusion.fusion import fuse, rejected
-from action_fusion.intake.buffers import LATEST_ACTION_NS, Buffer, KnownObjects, S
+from action_fusion.intake.buffers import LATEST_ACTION_NS, Buffer, KnownObjects, ObjectsBuffer, PostureBuffer, S
 from action_fusion.intake.losses import Before
-from action_fusion.intake.stream_samples import ObjectsSample, PostureSample, objects_sample, posture_sample
+from action_fusion.intake.stream_samples import PostureSample, objects_sample, posture_sample
 from action_fusion.settings import Settings
 from actum import keys
 from actum.commands import Command
@@ -65,8 +65,8 @@ class ActionFusion:
         self.counters = Counters()
         self._use_settings(settings)
         self._parameters = LiveParameters(settings, LIVE, self._use_settings)
-        self._postures: dict[int, Buffer[PostureSample]] = {}
-        self._objects: Buffer[ObjectsSample] = Buffer()
+        self._postures: dict[int, PostureBuffer] = {}
+        self._objects = ObjectsBuffer()
         self._known = KnownObjects(self.counters)
         self._pending: list[Pending] = []
         self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
@@ -197,10 +197,15 @@ class ActionFusion:
         """List the acting person's postures in the segment and before it."""
         return self._buffer(pending.action.agent).of_segment(pending.action.start_ns, pending.end_ns)
 
-    def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[Buffer[PostureSample] | None, int]]:
+    def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[PostureBuffer | None, int]]:
         """List the streams of the other people in the image, and the stamp at which each was in it last (ns)."""
-        last_ns = {other: sample.stamp_ns for sample in postures for other in sample.agents if other != agent}
-        return [(self._postures.get(other), last) for other, last in last_ns.items()]
+        last_ns: dict[int, int] = {}
+        newer: tuple[int, ...] = (agent,)
+        for sample in reversed(postures):
+            if sample.agents != newer:
+                last_ns = dict.fromkeys(sample.agents, sample.stamp_ns) | last_ns
+                newer = sample.agents
+        return [(self._postures.get(other), last) for other, last in sorted(last_ns.items()) if other != agent]
 
     def _answer(self, pending: Pending) -> Event:
         self._pending.remove(pending)
@@ -209,7 +214,8 @@ class ActionFusion:
         others = [buffer for buffer, _ in self._others(action.agent, postures) if buffer is not None]
         for buffer in (self._buffer(action.agent), self._objects):
             buffer.mark_answered(start_ns, end_ns)
-        postures_ns = sorted({ns for buffer in self._postures.values() for ns in buffer.stamps_since(start_ns)})
+        of_people = [buffer.stamps_since(start_ns) for buffer in self._postures.values()]
+        postures_ns = sorted(ns for stamps_ns in of_people if len(stamps_ns) for ns in stamps_ns[[0, -1]].tolist())
         objects_ns = self._objects.stamps_since(start_ns)
         if (reason := self._before.why_incomplete(postures_ns, objects_ns, start_ns, end_ns)) is not None:
             self.counters.reject("incomplete_segment", f"{action.segment_id}: {reason}")
@@ -217,14 +223,15 @@ class ActionFusion:
         return fuse(
             action,
             postures,
-            [buffer.of_segment(start_ns, end_ns) for buffer in others],
+            [buffer.hands_of_segment(start_ns, end_ns) for buffer in (self._buffer(action.agent), *others)],
+            self._objects.sightings_of_segment(start_ns, end_ns),
             self._objects.of_segment(start_ns, end_ns),
             self._settings,
         )
 
-    def _buffer(self, agent: int) -> Buffer[PostureSample]:
+    def _buffer(self, agent: int) -> PostureBuffer:
         """Return an agent's stream; where there are too many, an empty one or the one used least recently goes."""
-        buffer = self._postures.pop(agent) if agent in self._postures else Buffer()
+        buffer = self._postures.pop(agent) if agent in self._postures else PostureBuffer()
         if len(self._postures) == MOST_STREAMS:
             gone = next((each for each, kept in self._postures.items() if not kept), next(iter(self._postures)))
             if self._postures.pop(gone):

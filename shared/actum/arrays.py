@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,24 @@ Pixels = NDArray[np.uint8]
 
 UNKNOWN = (math.nan, math.nan, math.nan)
 """The position of a missing joint."""
+
+
+def stacked(arrays: Sequence[Array], *shape: int) -> Array:
+    """Stack arrays of one shape, perhaps none, into one of shape (len(arrays), *shape), which cannot be written to.
+
+    By their bytes: `np.stack` takes ten times as long for arrays as small as a posture.
+    """
+    return np.frombuffer(b"".join(cast("Sequence[bytes]", arrays)), np.float64).reshape(len(arrays), *shape)
+
+
+def median(values: Array) -> Array:
+    """Return the median over the first axis of at least one row of known numbers.
+
+    By sorting: `np.median` takes several times as long for the few rows of a movement.
+    """
+    rising = np.sort(values, axis=0)
+    middle: Array = (rising[(len(rising) - 1) // 2] + rising[len(rising) // 2]) / 2
+    return middle
 
 
 def joints_to_array(joints: Sequence[Joint]) -> Array:

@@ -1,7 +1,10 @@
 """Keeps the newest samples of a stream, and measures the longest part of a segment whose samples are lost."""
 
+from bisect import bisect_left, bisect_right
 from collections import deque
 from collections.abc import Iterable, Iterator
+from itertools import islice
+from operator import attrgetter
 from typing import Generic, Protocol, TypeVar
 
 from actum.node import SECOND_NS
@@ -24,6 +27,7 @@ class Stamped(Protocol):
 
 
 S = TypeVar("S", bound=Stamped)
+_stamp_ns = attrgetter("stamp_ns")
 
 
 class StreamBuffer(Generic[S]):
@@ -66,13 +70,11 @@ class StreamBuffer(Generic[S]):
 
     def between(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples with start <= stamp <= end, in order."""
-        newest_first = []
-        for sample in reversed(self._samples):
-            if sample.stamp_ns < start_ns:
-                break
-            if sample.stamp_ns <= end_ns:
-                newest_first.append(sample)
-        return newest_first[::-1]
+        first = bisect_left(self._samples, start_ns, key=_stamp_ns)
+        after = bisect_right(self._samples, end_ns, lo=first, key=_stamp_ns)
+        # from its newer end, where most segments lie: a deque has to be walked through
+        newest_first = islice(reversed(self._samples), len(self._samples) - after, len(self._samples) - first)
+        return list(newest_first)[::-1]
 
     def mark_answered(self, start_ns: int, end_ns: int) -> None:
         """Remember that a segment has been answered, so that its later samples are too late."""

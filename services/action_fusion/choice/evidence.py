@@ -7,8 +7,8 @@ import numpy as np
 
 from action_fusion.settings import Settings
 from action_fusion.tracks.actors import Actor
-from action_fusion.tracks.comotion import Comotion, comotion, transporting
-from action_fusion.tracks.hand_tracks import BOTH_HANDS, HandTracks
+from action_fusion.tracks.comotion import Comotion, comotion, gaps_m, transporting
+from action_fusion.tracks.hand_tracks import BOTH_HANDS, HandTrack, HandTracks
 from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.arrays import Array
 from actum.messages import Action, Hand, Pointing
@@ -92,7 +92,7 @@ def gather(
     side = action.hand or PART_HANDS.get(action.part)
     sides = BOTH_HANDS if side is None else (side,)
     near = _proximities(actor, tracks, sides)
-    pairs = pairs_of(_concerned([one.track for one in near], hands, settings), hands, settings)
+    pairs = _concerned([one.track for one in near], hands, settings)
     by_hand = transporting(pairs, settings.moved_m)
     transported = {pair.track.id for pair in by_hand}
     own = [pair for side in sides for pair in pairs if pair.hand is hands.own.get(side)]
@@ -100,9 +100,12 @@ def gather(
     return Evidence(action, sides, actor, hands, tracks, near, by_hand, own, free, settings)
 
 
-def pairs_of(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[Comotion]:
-    """Pair everyone's hands with objects."""
-    return [comotion(hand, track, settings.reach_m, settings.moved_m) for hand in hands.everyones for track in tracks]
+def pairs_of(
+    tracks: Sequence[ObjectTrack], hands: Sequence[HandTrack], within_m: float, settings: Settings
+) -> list[Comotion]:
+    """Pair hands with the objects that may have come as close to them as `within_m`."""
+    close = np.argwhere(gaps_m(hands, tracks) <= within_m).tolist()
+    return [comotion(hands[hand], tracks[track], settings.reach_m, settings.moved_m) for hand, track in close]
 
 
 def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
@@ -125,16 +128,18 @@ def _proximities(actor: Actor, tracks: Sequence[ObjectTrack], sides: Sequence[Ha
     return [one for one in near if np.isfinite(one.distance_m)]
 
 
-def _concerned(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[ObjectTrack]:
-    """Drop objects that stayed in place beyond the reach of a held tool; keep at most the nearest `MOST_OBJECTS`."""
-    own = hands.own.values()
-    distances_m = [
-        min(float(np.linalg.norm(track.at(hand.stamps_ns) - hand.positions_m, axis=1).min()) for hand in own)
-        for track in tracks
-    ]
-    nearest = sorted(zip(distances_m, tracks, strict=True), key=lambda near: near[0])[:MOST_OBJECTS]
-    return [
-        track
-        for distance_m, track in nearest
-        if distance_m <= settings.reach_with_tool_m or track.is_displaced(settings.moved_m)
-    ]
+def _concerned(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[Comotion]:
+    """Pair everyone's hands with the objects that came within a held tool's reach of an own hand.
+
+    Only the nearest `MOST_OBJECTS` count, the nearest one first.
+    """
+    of_actor = list(hands.own.values())
+    own = pairs_of(tracks, of_actor, settings.reach_with_tool_m, settings)
+    nearest_m: dict[ObjectTrack, float] = {}
+    for pair in own:
+        nearest_m[pair.track] = min(float(pair.distances_m.min()), nearest_m.get(pair.track, np.inf))
+    in_reach = [track for track, distance_m in nearest_m.items() if distance_m <= settings.reach_with_tool_m]
+    concerned = sorted(in_reach, key=nearest_m.__getitem__)[:MOST_OBJECTS]
+    kept = [pair for pair in own if pair.track in concerned]
+    nearest_first = sorted(kept, key=lambda pair: (of_actor.index(pair.hand), concerned.index(pair.track)))
+    return nearest_first + pairs_of(concerned, hands.others, settings.reach_m, settings)

@@ -8,7 +8,7 @@ from action_fusion.choice.evidence import Choice, Evidence, pairs_of
 from action_fusion.settings import Settings
 from action_fusion.tracks.comotion import STEADY_M, Comotion, comotion, transporting
 from action_fusion.tracks.object_tracks import ObjectTrack
-from actum.arrays import Mask
+from actum.arrays import Mask, median
 
 STEADY_SHARE = 0.75
 """Least share of the segment in which a held object has a constant offset from the hand, where neither moves."""
@@ -65,7 +65,7 @@ def displaced_by_others(evidence: Evidence) -> list[ObjectTrack]:
     """List the displaced objects that neither were in the actor's hands, nor moved near them in nobody's hand."""
     moved_m = evidence.settings.moved_m
     displaced = [one.track for one in evidence.near if one.track.is_displaced(moved_m)]
-    pairs = pairs_of(displaced, evidence.hands, evidence.settings)
+    pairs = pairs_of(displaced, evidence.hands.everyones, evidence.settings.reach_m, evidence.settings)
     in_hand = transporting(pairs, moved_m)
     transported = {pair.track.id for pair in in_hand}
     own = [pair for pair in pairs if pair.hand in evidence.hands.own.values()]
@@ -90,8 +90,8 @@ def _is_held(pair: Comotion, settings: Settings) -> bool:
     hand_to_object_m = pair.hand_to_object_m[pair.hand.in_segment]
     if not len(hand_to_object_m):
         return False
-    slip = np.linalg.norm(hand_to_object_m - np.median(hand_to_object_m, axis=0), axis=1)
-    near = np.linalg.norm(hand_to_object_m, axis=1) <= settings.grasp_m
+    slip = np.linalg.norm(hand_to_object_m - median(hand_to_object_m), axis=1)
+    near = pair.distances_m[pair.hand.in_segment] <= settings.grasp_m
     return bool(np.mean((slip <= STEADY_M) & near) >= STEADY_SHARE)
 
 
@@ -109,9 +109,9 @@ def _tool_target(held: Comotion, others: Sequence[Comotion], settings: Settings)
     for other in others:
         between_m = (held.object_m - other.object_m)[instants]
         distances_m = np.linalg.norm(between_m, axis=1)
-        deviations_m = np.linalg.norm(between_m - np.median(between_m, axis=0), axis=1)
+        deviations_m = np.linalg.norm(between_m - median(between_m), axis=1)
         if np.mean((deviations_m <= WORKING_M) & (distances_m <= settings.grasp_m)) >= WORKING_SHARE:
-            nearness.append((float(np.median(distances_m)), other))
+            nearness.append((float(median(distances_m)), other))
     return min(nearness, key=lambda near: near[0], default=(0.0, None))[1]
 
 
@@ -121,6 +121,6 @@ def _in_hand(held: Comotion) -> Mask:
     if not len(moved):
         return held.with_hand
     instants = np.arange(len(held.with_hand))
-    near = held.distances_m <= np.median(held.distances_m[moved]) + WORKING_M
+    near = held.distances_m <= median(held.distances_m[moved]) + WORKING_M
     in_hand: Mask = near & (instants >= moved[0]) & held.hand.in_segment
     return in_hand

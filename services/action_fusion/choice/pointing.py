@@ -9,7 +9,7 @@ from action_fusion.choice.evidence import NO_HAND, OFF_THE_LINE, Choice, Evidenc
 from action_fusion.tracks.actors import Actor
 from action_fusion.tracks.comotion import FURTHEST_SHARE
 from action_fusion.tracks.object_tracks import ObjectTrack
-from actum.arrays import Array
+from actum.arrays import Array, median
 from actum.messages import Hand, Pointing
 
 HOLDING_SHARE = 1 / 3
@@ -68,9 +68,9 @@ def pointing_angle(object_ego: Array, tip_ego: Array, origin_ego: Array) -> floa
     if not len(known):
         return np.inf
     to_tip, to_object = tip_ego[known] - origin_ego[known], object_ego[known] - origin_ego[known]
-    last = np.median(to_tip[_holding(to_tip)], axis=0)
+    last = median(to_tip[_holding(to_tip)])
     out = np.linalg.norm(to_tip - last, axis=1) <= POINTING_M
-    a, b = (np.median(to_tip[out], axis=0), np.median(to_object[out], axis=0)) if out.any() else (last, to_object[-1])
+    a, b = (median(to_tip[out]), median(to_object[out])) if out.any() else (last, to_object[-1])
     length = float(np.linalg.norm(a) * np.linalg.norm(b))
     return float(np.arccos(np.clip(a @ b / max(length, SMALLEST_M), -1.0, 1.0)))
 
@@ -97,7 +97,7 @@ def _outstretched_m(actor: Actor, side: Hand) -> float:
         return -np.inf
     last = known[_holding((tip - head)[known])]
     aside = np.linalg.norm(np.cross(tip[last], head[last]), axis=1)
-    return float(np.median(aside / np.maximum(np.linalg.norm(head[last], axis=1), SMALLEST_M)))
+    return float(median(aside / np.maximum(np.linalg.norm(head[last], axis=1), SMALLEST_M)))
 
 
 def _holding(to_tip: Array) -> slice:

@@ -9,7 +9,7 @@ from action_fusion.settings import Settings
 from action_fusion.tracks.comotion import Comotion, distances_m
 from action_fusion.tracks.hand_tracks import HandTrack, stops
 from action_fusion.tracks.object_tracks import noise_m
-from actum.arrays import Array, Indices, Mask
+from actum.arrays import Array, Indices, Mask, median
 
 REACH_STEP_M = 0.05
 """Length of a reach's last step, which gives its direction: several times a joint's noise."""
@@ -75,7 +75,7 @@ def _misses(pairs: Sequence[Comotion], settings: Settings) -> list[tuple[float, 
     counted = (in_grasp | aimed) & arrived if arrived.any() else in_grasp & stopped.last
     fewest = 1 if arrived.any() else max(1, np.count_nonzero(hand.in_segment) / 2)
     touched: Mask = counted.sum(axis=1) >= fewest
-    return [(float(np.median(missed[row, counted[row]])), pair) for row, pair in enumerate(pairs) if touched[row]]
+    return [(float(median(missed[row, counted[row]])), pair) for row, pair in enumerate(pairs) if touched[row]]
 
 
 def _closings(hand: HandTrack, pairs: Sequence[Comotion], instants: Mask) -> Array:

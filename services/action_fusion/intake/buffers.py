@@ -1,9 +1,13 @@
 """The recent past of the streams, long enough for the longest segment and the latest action."""
 
-from itertools import pairwise
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
-from action_fusion.intake.stream_samples import Sample
+import numpy as np
+from numpy.typing import NDArray
+
+from action_fusion.intake.columns import Columns
+from action_fusion.intake.stream_samples import HANDS, ObjectsSample, PostureSample, Sample
+from actum.arrays import Array, Indices, Mask
 from actum.limits import MAX_SEGMENT_NS
 from actum.losses import StreamBuffer
 from actum.messages import MOST_OBJECTS, Objects
@@ -24,7 +28,27 @@ KEPT_NS = MAX_SEGMENT_NS + MEMORY_NS + LATEST_ACTION_NS
 """How long samples are kept: for the longest segment, the time before it, and the wait for its action."""
 
 
+UNKNOWN_HANDS = np.full((len(HANDS), 3), np.nan)
+"""The hands of an invalid posture."""
+
 S = TypeVar("S", bound=Sample)
+
+
+class Hands(NamedTuple):
+    """Where a person's hands were: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 2, 3) of right and left
+    hand in the camera frame, NaN where unknown."""
+
+    stamps_ns: Array
+    positions_m: Array
+
+
+class Sightings(NamedTuple):
+    """Where an object was: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3) in the camera frame; `seen`
+    (n,) tells sightings from positions that were tracked in the image."""
+
+    stamps_ns: Array
+    positions_m: Array
+    seen: Mask
 
 
 class Buffer(StreamBuffer[S]):
@@ -33,30 +57,101 @@ class Buffer(StreamBuffer[S]):
     def __init__(self) -> None:
         super().__init__(KEPT_NS)
         self._guard = StampGuard()
+        self._marks = Columns(np.int64, 2)
+
+    def append(self, sample: S) -> None:
+        """Add the next sample, and forget the samples that are too old."""
+        super().append(sample)
+        self._marks.append((sample.stamp_ns, hash(sample.session_id)), len(self))
 
     def judge(self, sample: S) -> Order:
         """Judge a sample's order in the stream; a new session counts as a restart only if the stamp went back."""
         order = self._guard.judge(sample.stamp_ns, sample.session_id)
         return Order.NEXT if sample.stamp_ns > self.newest_ns else order
 
-    def stamps_since(self, start_ns: int) -> list[int]:
-        """List the stamps from `MEMORY_NS` before a segment's start on."""
-        return [sample.stamp_ns for sample in self if sample.stamp_ns >= start_ns - MEMORY_NS]
+    def stamps_since(self, start_ns: int) -> NDArray[np.int64]:
+        """Return the stamps from `MEMORY_NS` before a segment's start on."""
+        stamps_ns: NDArray[np.int64] = self._marks.newest(len(self))[:, 0]
+        return stamps_ns[np.searchsorted(stamps_ns, start_ns - MEMORY_NS) :]
 
     def of_segment(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples of a segment and of `MEMORY_NS` before it, in the session of the last sample.
 
         Samples before a gap of `LOOK_BACK_NS` or more that precedes the segment are left out.
         """
-        window = self.between(start_ns - MEMORY_NS, end_ns)
-        listed = [sample for sample in window if sample.session_id == window[-1].session_id]
-        stamps_ns = [sample.stamp_ns for sample in listed]
-        after_gap = [
-            i
-            for i, (before_ns, then_ns) in enumerate(pairwise([*stamps_ns, end_ns]), start=1)
-            if before_ns < start_ns and min(then_ns, start_ns) - before_ns >= LOOK_BACK_NS
-        ]
-        return listed[after_gap[-1] if after_gap else 0 :]
+        rows, stamps_ns = self._rows_of_segment(start_ns, end_ns)
+        if not len(rows):
+            return []
+        window = self.between(int(stamps_ns[0]), int(stamps_ns[-1]))
+        return window if len(window) == len(rows) else [window[row] for row in rows - rows[0]]
+
+    def _rows_of_segment(self, start_ns: int, end_ns: int) -> tuple[Indices, NDArray[np.int64]]:
+        """Return the rows of these samples among the newest ones, (n,), and their stamps (n,)."""
+        all_ns, sessions = self._marks.newest(len(self)).T
+        rows = np.arange(*np.searchsorted(all_ns, [start_ns - MEMORY_NS, end_ns + 1]))
+        rows = rows[sessions[rows] == sessions[rows[-1:]]]
+        stamps_ns = all_ns[rows]
+        until_ns = np.minimum(np.append(stamps_ns[1:], start_ns), start_ns)
+        gaps = np.flatnonzero(until_ns - stamps_ns >= LOOK_BACK_NS)
+        first = gaps[-1] + 1 if len(gaps) else 0
+        return rows[first:], stamps_ns[first:]
+
+
+class PostureBuffer(Buffer[PostureSample]):
+    """One person's postures, and the hands' positions apart from them."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._hands = Columns(np.float64, *UNKNOWN_HANDS.shape)
+
+    def append(self, sample: PostureSample) -> None:
+        """Add the next posture."""
+        super().append(sample)
+        self._hands.append(UNKNOWN_HANDS if sample.body is None else sample.body.hands_m, len(self))
+
+    def hands_of_segment(self, start_ns: int, end_ns: int) -> Hands:
+        """Return the hands of the postures that `of_segment` lists."""
+        rows, stamps_ns = self._rows_of_segment(start_ns, end_ns)
+        return Hands((stamps_ns - start_ns).astype(np.float64), self._hands.newest(len(self))[rows])
+
+
+class ObjectsBuffer(Buffer[ObjectsSample]):
+    """The messages of objects, and the positions of each object apart from them."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._positions: dict[int, tuple[Columns, Columns]] = {}
+
+    def append(self, sample: ObjectsSample) -> None:
+        """Add the next message, and forget the objects that were in none that is kept."""
+        super().append(sample)
+        for number, position_m in sample.positions_m.items():
+            stamps, rows = self._positions.setdefault(number, (Columns(np.int64), Columns(np.float64, 4)))
+            stamps.append(sample.stamp_ns, len(self))
+            rows.append((*position_m, number not in sample.image_tracked), len(self))
+        if len(self._positions) > len(sample.positions_m):
+            oldest_ns = next(iter(self)).stamp_ns
+            kept = {number: each for number, each in self._positions.items() if each[0].newest(1)[0] >= oldest_ns}
+            self._positions = kept
+
+    def clear(self) -> None:
+        """Forget everything, after a restart of the stream."""
+        super().clear()
+        self._positions.clear()
+
+    def sightings_of_segment(self, start_ns: int, end_ns: int) -> dict[int, Sightings]:
+        """Return where each object was, by its number, in the messages that `of_segment` lists."""
+        _, listed_ns = self._rows_of_segment(start_ns, end_ns)
+        found = {}
+        for number, (stamps, rows) in sorted(self._positions.items() if len(listed_ns) else ()):
+            own_ns = stamps.newest(min(len(stamps), len(self)))
+            at = np.minimum(np.searchsorted(listed_ns, own_ns), len(listed_ns) - 1)
+            listed = np.flatnonzero(listed_ns[at] == own_ns)
+            if len(listed):
+                own = rows.newest(len(own_ns))[listed]
+                stamps_ns = (own_ns[listed] - start_ns).astype(np.float64)
+                found[number] = Sightings(stamps_ns, np.ascontiguousarray(own[:, :3]), own[:, 3] > 0)
+        return found
 
 
 class KnownObjects:

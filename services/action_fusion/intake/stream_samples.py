@@ -10,6 +10,10 @@ from actum.arrays import Array, joints_to_array
 from actum.limits import MAX_COORDINATE_M
 from actum.messages import Objects, Posture
 from actum.node import Counters
+from actum.skeletons import INDEX
+
+HANDS = [INDEX["right_hand"], INDEX["left_hand"]]
+"""The joints of which events tell."""
 
 UNIT_TOLERANCE = 0.1
 """Largest deviation of a quaternion's length from 1: rounding causes less, values that are no orientation more."""
@@ -22,6 +26,7 @@ LEVEL = (0.0, -1.0, 0.0)
 class Body:
     """A valid posture: `ego_from_camera` (4, 4), and joints (15, 3) in metres, egocentric, NaN where one is missing.
 
+    `hands_m` (2, 3) are the positions of right and left hand in the camera frame.
     `has_front` is false where the egocentric frame was not computed from a body, so that its forward axis is arbitrary.
     `depth_std_m` is the standard deviation of the body's distance from the camera, 0 where the distance is measured.
     `up_in_camera` points against gravity.
@@ -29,6 +34,7 @@ class Body:
 
     ego_from_camera: Array
     joints_m: Array
+    hands_m: Array
     has_front: bool
     depth_std_m: float
     up_in_camera: tuple[float, ...]
@@ -108,4 +114,5 @@ def _body(posture: Posture, counters: Counters) -> Body | None:
         counters.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
     depth_std_m = min(posture.depth_std_m or 0.0, MAX_COORDINATE_M)
     up_in_camera = LEVEL if posture.up_in_camera is None else tuple(posture.up_in_camera)
-    return Body(ego_from_camera, joints_m, posture.frame != "world", depth_std_m, up_in_camera)
+    hands_m = (joints_m[HANDS] - ego_from_camera[:3, 3]) @ ego_from_camera[:3, :3]
+    return Body(ego_from_camera, joints_m, hands_m, posture.frame != "world", depth_std_m, up_in_camera)

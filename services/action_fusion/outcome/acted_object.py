@@ -12,6 +12,7 @@ from action_fusion.tracks.hand_tracks import HandTrack
 from action_fusion.tracks.object_tracks import SETTLED_NS, ObjectTrack
 from action_fusion.tracks.occlusion import SLIP_M
 from actum import geometry
+from actum.arrays import median
 from actum.messages import ActedObject, ObjectPose
 
 
@@ -48,7 +49,7 @@ def _in_hand(track: ObjectTrack, hand: HandTrack, is_held: bool, settings: Setti
     if not in_hand.any():
         return taken_along, False
     last = hand.in_segment & (hand.stamps_ns >= hand.stamps_ns[-1] - SETTLED_NS)
-    slip_m = np.median(pair.hand_to_object_m[last], axis=0) - np.median(pair.hand_to_object_m[in_hand], axis=0)
+    slip_m = median(pair.hand_to_object_m[last]) - median(pair.hand_to_object_m[in_hand])
     return taken_along, float(np.linalg.norm(slip_m)) <= SLIP_M
 
 

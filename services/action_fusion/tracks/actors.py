@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from action_fusion.intake.stream_samples import Body, PostureSample
-from actum.arrays import Array
+from actum.arrays import Array, stacked
 from actum.messages import Hand
 from actum.skeletons import INDEX
 
@@ -45,7 +45,7 @@ def actor_of(postures: Sequence[PostureSample], start_ns: int) -> Actor:
     bodies = [body for _, body in stamped]
     return Actor(
         np.array([stamp for stamp, _ in stamped], dtype=np.float64),
-        np.array([body.ego_from_camera for body in bodies]).reshape(-1, 4, 4),
-        np.array([body.joints_m for body in bodies]).reshape(-1, len(INDEX), 3),
+        stacked([body.ego_from_camera for body in bodies], 4, 4),
+        stacked([body.joints_m for body in bodies], len(INDEX), 3),
         bodies,
     )

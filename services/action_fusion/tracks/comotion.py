@@ -2,13 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from action_fusion.intake.buffers import LOOK_BACK_NS
 from action_fusion.tracks.hand_tracks import HandTrack
 from action_fusion.tracks.object_tracks import ObjectTrack
-from actum.arrays import Array, Indices, Mask
+from actum.arrays import Array, Indices, Mask, median
 from actum.node import SECOND_NS
 
 STEP_NS = 1 * SECOND_NS
@@ -29,25 +30,25 @@ class Comotion:
     """The motion of an object relative to a hand, at the n instants of the hand's track.
 
     `object_m` (n, 3) is the object's position in the camera frame, `hand_to_object_m` (n, 3) the vector from the hand
-    to it, `path_m` (n,) the object's path since the previous instant. `near` (n,) tells whether the object is within
-    reach, `in_motion` (n,) whether its displacement over `STEP_NS` is noticeable, `with_hand` (n,) whether the hand
-    moves it.
+    to it, `distances_m` (n,) the length of that vector. `near` (n,) tells whether the object is within reach,
+    `in_motion` (n,) whether its displacement over `STEP_NS` is noticeable, too, and `with_hand` (n,) whether it is the
+    hand that moves it.
     """
 
     hand: HandTrack
     track: ObjectTrack
     object_m: Array
     hand_to_object_m: Array
-    path_m: Array
+    distances_m: Array
     near: Mask
     in_motion: Mask
     with_hand: Mask
 
-    @property
-    def distances_m(self) -> Array:
-        """Distances (n,) of the object from the hand."""
-        distances_m: Array = np.linalg.norm(self.hand_to_object_m, axis=1)
-        return distances_m
+    @cached_property
+    def path_m(self) -> Array:
+        """The object's path (n,) since the previous instant."""
+        path_m: Array = np.linalg.norm(np.diff(self.object_m, axis=0, prepend=self.object_m[:1]), axis=1)
+        return path_m
 
     @property
     def recent(self) -> Mask:
@@ -58,7 +59,7 @@ class Comotion:
     @property
     def in_motion_nearby(self) -> bool:
         """Whether the object was in motion within reach during the segment."""
-        return bool((self.near & self.in_motion & self.hand.in_segment).any())
+        return bool((self.in_motion & self.hand.in_segment).any())
 
     def transport_m(self, since_ns: float = -LOOK_BACK_NS) -> float:
         """Return the length of the object's path in the hand since an instant, by default just before the segment."""
@@ -69,7 +70,9 @@ class Comotion:
 
         Only the segment and `LOOK_BACK_NS` before it count, and earlier motion if the hand has held the object since.
         """
-        otherwise_m = float(self.path_m[self.recent & self.in_motion & self.near & ~self.with_hand].sum())
+        if not self.with_hand.any():
+            return False
+        otherwise_m = float(self.path_m[self.recent & self.in_motion & ~self.with_hand].sum())
         return self.transport_m() >= max(moved_m, otherwise_m) or self._is_held_since(moved_m)
 
     def _is_held_since(self, moved_m: float) -> bool:
@@ -78,8 +81,8 @@ class Comotion:
         recent = before[self.recent[before]]
         if not len(recent):
             return False
-        in_hand_m = np.median(self.hand_to_object_m[recent], axis=0)
-        slipped = np.linalg.norm(self.hand_to_object_m[before] - in_hand_m, axis=1) > STEADY_M
+        in_hand_m = median(self.hand_to_object_m[recent])
+        slipped = distances_m(self.hand_to_object_m[before], in_hand_m) > STEADY_M
         held = before[np.flatnonzero(slipped)[-1] + 1 :] if slipped.any() else before
         return float(self.path_m[held][self.with_hand[held]].sum()) >= moved_m
 
@@ -92,24 +95,44 @@ def comotion(hand: HandTrack, track: ObjectTrack, reach_m: float, moved_m: float
     1 - |d_o - d_h|^2 / |d_o|^2 exceeds 1/2, and the object is within `reach_m`.
     """
     object_m = track.at(hand.stamps_ns)
-    since = instants_furthest_away(object_m, hand.stamps_ns, STEP_NS)
-    first_recent = np.searchsorted(hand.stamps_ns, -LOOK_BACK_NS)
-    since[first_recent:] = np.maximum(since[first_recent:], first_recent)
-    object_step = object_m - object_m[since]
-    in_motion: Mask = np.linalg.norm(object_step, axis=1) >= moved_m
-    difference = object_step - (hand.positions_m - hand.positions_m[since])
-    unexplained = np.einsum("ij,ij->i", difference, difference)
-    explained = unexplained < (1 - EXPLAINED) * np.einsum("ij,ij->i", object_step, object_step)
     hand_to_object_m = object_m - hand.positions_m
-    near: Mask = np.linalg.norm(hand_to_object_m, axis=1) <= reach_m
-    path_m = np.linalg.norm(np.diff(object_m, axis=0, prepend=object_m[:1]), axis=1)
-    return Comotion(hand, track, object_m, hand_to_object_m, path_m, near, in_motion, in_motion & explained & near)
+    apart_m = np.linalg.norm(hand_to_object_m, axis=1)
+    near: Mask = apart_m <= reach_m
+    in_motion, with_hand = np.zeros_like(near), np.zeros_like(near)
+    pair = Comotion(hand, track, object_m, hand_to_object_m, apart_m, near, in_motion, with_hand)
+    instants = np.flatnonzero(near)
+    if len(instants) and track.extent_m >= moved_m:
+        since = instants_furthest_away(object_m, hand.stamps_ns, STEP_NS, instants)
+        first_recent = np.searchsorted(hand.stamps_ns, -LOOK_BACK_NS)
+        since = np.where(instants < first_recent, since, np.maximum(since, first_recent))
+        object_step = object_m[instants] - object_m[since]
+        in_motion[instants] = np.linalg.norm(object_step, axis=1) >= moved_m
+        difference = object_step - (hand.positions_m[instants] - hand.positions_m[since])
+        unexplained = np.einsum("ij,ij->i", difference, difference)
+        explained = unexplained < (1 - EXPLAINED) * np.einsum("ij,ij->i", object_step, object_step)
+        with_hand[instants] = in_motion[instants] & explained
+    return pair
+
+
+def gaps_m(hands: Sequence[HandTrack], tracks: Sequence[ObjectTrack]) -> Array:
+    """Return how far the bounds of each hand's and each object's positions are apart, (hands, tracks).
+
+    No hand was ever closer to an object than that.
+    """
+    hand_bounds_m = np.array([hand.bounds_m for hand in hands]).reshape(-1, 1, 2, 3)
+    track_bounds_m = np.array([track.bounds_m for track in tracks]).reshape(1, -1, 2, 3)
+    beyond_m = np.maximum(
+        hand_bounds_m[:, :, 0] - track_bounds_m[:, :, 1], track_bounds_m[:, :, 0] - hand_bounds_m[:, :, 1]
+    )
+    gaps: Array = np.linalg.norm(np.maximum(beyond_m, 0.0), axis=2)
+    return gaps
 
 
 def transporting(pairs: Sequence[Comotion], moved_m: float) -> frozenset[Comotion]:
     """Return the pairs in which the hand transports the object, together with other hands or one after another."""
+    moving = [pair for pair in pairs if pair.with_hand.any()]
     return frozenset(
-        pair for pair in pairs if pair.is_transported(moved_m) or _without_others(pair, pairs).is_transported(moved_m)
+        pair for pair in moving if pair.is_transported(moved_m) or _without_others(pair, moving).is_transported(moved_m)
     )
 
 
@@ -122,21 +145,26 @@ def _without_others(pair: Comotion, pairs: Sequence[Comotion]) -> Comotion:
     return replace(pair, in_motion=pair.in_motion & alone, with_hand=pair.with_hand & alone)
 
 
-def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: float) -> Indices:
-    """Find, for each of n positions (n, 3) at stamps (n,), the earlier instant at which it was furthest away.
+def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: float, instants: Indices) -> Indices:
+    """Find, for some of n positions (n, 3) at stamps (n,), the earlier instant at which it was furthest away.
 
     That is the last instant within `within_ns` with at least four fifths of the greatest distance, so that time at
     rest before a motion does not count.
 
+    Args:
+        positions_m: (n, 3).
+        stamps_ns: (n,), rising.
+        within_ns: how far back.
+        instants: (k,), of which positions; one at least.
+
     Returns:
-        indices (n,), each at most the position's own index.
+        indices (k,), each at most the position's own index.
     """
-    here = np.arange(len(positions_m))
-    earliest = np.searchsorted(stamps_ns, stamps_ns - within_ns)
-    window = earliest[:, None] + np.arange((here - earliest).max() + 1)
-    away = distances_m(positions_m[:, None], positions_m[np.minimum(window, here[:, None])])
-    far = (away >= FURTHEST_SHARE * away.max(axis=1, keepdims=True)) & (window <= here[:, None])
-    last: Indices = window[here, far.shape[1] - 1 - np.argmax(far[:, ::-1], axis=1)]
+    earliest = np.searchsorted(stamps_ns, stamps_ns[instants] - within_ns)
+    window = earliest[:, None] + np.arange((instants - earliest).max() + 1)
+    away = distances_m(positions_m[instants, None], positions_m[np.minimum(window, instants[:, None])])
+    far = (away >= FURTHEST_SHARE * away.max(axis=1, keepdims=True)) & (window <= instants[:, None])
+    last: Indices = window[np.arange(len(instants)), far.shape[1] - 1 - np.argmax(far[:, ::-1], axis=1)]
     return last
 
 

@@ -6,10 +6,11 @@ Distances are the same as in the egocentric frame, because the two frames differ
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from action_fusion.tracks.actors import Actor
+from action_fusion.intake.buffers import Hands
 from actum.arrays import Array, Indices, Mask
 from actum.messages import Hand
 from actum.node import SECOND_NS
@@ -53,6 +54,11 @@ class HandTrack:
         inside: Mask = self.stamps_ns >= 0
         return inside
 
+    @cached_property
+    def bounds_m(self) -> Array:
+        """The least and the greatest coordinates (2, 3) of the positions."""
+        return np.stack([self.positions_m.min(axis=0), self.positions_m.max(axis=0)])
+
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
         return np.stack([np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T], axis=1)
@@ -93,23 +99,21 @@ class Stops:
     returned: bool = False
 
 
-def hand_tracks(actor: Actor, others: Sequence[Actor]) -> HandTracks:
+def hand_tracks(own: Hands, others: Sequence[Hands]) -> HandTracks:
     """Track the hands of the actor and of other people; a hand whose joint is always missing has no track."""
-    return HandTracks(_tracks_of(actor), [track for other in others for track in _tracks_of(other).values()])
+    return HandTracks(_tracks_of(own), [track for other in others for track in _tracks_of(other).values()])
 
 
-def _tracks_of(actor: Actor) -> dict[Hand, HandTrack]:
-    tracks = [_hand_track(actor, side) for side in BOTH_HANDS]
+def _tracks_of(hands: Hands) -> dict[Hand, HandTrack]:
+    tracks = [_hand_track(side, hands.stamps_ns, hands.positions_m[:, n]) for n, side in enumerate(BOTH_HANDS)]
     return {track.side: track for track in tracks if len(track.stamps_ns)}
 
 
-def _hand_track(actor: Actor, side: Hand) -> HandTrack:
-    rotations, translations = actor.ego_from_camera[:, :3, :3], actor.ego_from_camera[:, :3, 3]
-    positions_m = np.einsum("pji,pj->pi", rotations, actor.hand_m(side) - translations)
-    known = np.flatnonzero(np.isfinite(positions_m).all(axis=1))
-    stamps_ns, smooth_m = actor.stamps_ns[known], _smoothed(positions_m[known], actor.stamps_ns[known])
+def _hand_track(side: Hand, stamps_ns: Array, positions_m: Array) -> HandTrack:
+    known = np.flatnonzero(np.isfinite(positions_m[:, 0]))
+    smooth_m = _smoothed(positions_m[known], stamps_ns[known])
     stride = max(1, math.ceil(len(known) / MOST_INSTANTS))
-    return HandTrack(side, stamps_ns[::stride], smooth_m[::stride])
+    return HandTrack(side, stamps_ns[known][::stride], smooth_m[::stride])
 
 
 def _smoothed(positions_m: Array, stamps_ns: Array) -> Array:
@@ -151,5 +155,5 @@ def _resting(hand: HandTrack) -> Mask:
     if not inside.any():
         return inside
     speeds = hand.speeds_m_per_s()
-    slowest = float(np.quantile(speeds[inside], SLOWEST_SHARE))
-    return inside & (speeds <= (RESTING_M_PER_S if speeds[inside].min() <= RESTING_M_PER_S else slowest))
+    rests = speeds[inside].min() <= RESTING_M_PER_S
+    return inside & (speeds <= (RESTING_M_PER_S if rests else np.quantile(speeds[inside], SLOWEST_SHARE)))

@@ -1,14 +1,14 @@
 """Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
+from action_fusion.intake.buffers import Sightings
 from action_fusion.intake.stream_samples import ObjectsSample
-from actum.arrays import Array, Mask
+from actum.arrays import Array, Mask, median
 from actum.node import SECOND_NS
 
 SETTLED_NS = SECOND_NS // 4
@@ -60,7 +60,9 @@ class ObjectTrack:
 
         None where the object did not get `moved_m` away, or does not end nearer to the start than to that position.
         """
-        return None if self._furthest is None or self._furthest[1] < moved_m else self._furthest[0]
+        if self.extent_m < moved_m or self._furthest is None or self._furthest[1] < moved_m:
+            return None
+        return self._furthest[0]
 
     @cached_property
     def _furthest(self) -> tuple[int, float] | None:
@@ -69,7 +71,7 @@ class ObjectTrack:
         if len(inside) < SETTLED_SAMPLES:
             return None
         positions_m = self.positions_m[inside]
-        settled_m = np.median(sliding_window_view(positions_m, SETTLED_SAMPLES, axis=0), axis=-1)
+        settled_m = median(np.stack([positions_m[n : len(inside) - 2 + n] for n in range(SETTLED_SAMPLES)]))
         away_m = np.linalg.norm(settled_m - self._start_m, axis=1)
         furthest = int(np.argmax(away_m))
         back_m = np.linalg.norm(self.end_m - settled_m[furthest])
@@ -82,13 +84,23 @@ class ObjectTrack:
         """Measure the displacement (3,) from the segment's start to the turn or, without one, the end; camera frame."""
         index = self.turn(moved_m)
         half = SETTLED_SAMPLES // 2
-        reached_m = self.end_m if index is None else _median(self.positions_m[index - half : index + half + 1])
+        reached_m = self.end_m if index is None else median(self.positions_m[index - half : index + half + 1])
         displacement_m: Array = reached_m - self._start_m
         return displacement_m
 
     def is_displaced(self, moved_m: float) -> bool:
         """Whether the object is displaced by `moved_m` or more."""
-        return float(np.linalg.norm(self.displacement_m(moved_m))) >= moved_m
+        return self.extent_m >= moved_m and float(np.linalg.norm(self.displacement_m(moved_m))) >= moved_m
+
+    @cached_property
+    def bounds_m(self) -> Array:
+        """The least and the greatest coordinates (2, 3) of the positions."""
+        return np.stack([self.positions_m.min(axis=0), self.positions_m.max(axis=0)])
+
+    @cached_property
+    def extent_m(self) -> float:
+        """The diagonal of these bounds: no two positions are further apart."""
+        return float(np.linalg.norm(self.bounds_m[1] - self.bounds_m[0]))
 
     @cached_property
     def end_m(self) -> Array:
@@ -97,7 +109,7 @@ class ObjectTrack:
         if self.seen[-1]:
             unseen = np.flatnonzero(~self.seen)
             latest[: unseen[-1] + 1 if len(unseen) else 0] = False
-            return _median(self.positions_m[latest][-SETTLED_SAMPLES:])
+            return median(self.positions_m[latest][-SETTLED_SAMPLES:])
         away = ~latest | (np.linalg.norm(self.positions_m - self.positions_m[-1], axis=1) > RESTING_M)
         before = np.flatnonzero(away | self.seen)
         rest_m: Array = self.positions_m[before[-1] + 1 if len(before) else 0 :].mean(axis=0)
@@ -109,28 +121,15 @@ class ObjectTrack:
         apart_ns = np.abs(self.stamps_ns[self.seen])
         nearest = np.argsort(apart_ns, kind="stable")[:SETTLED_SAMPLES]
         around = nearest[apart_ns[nearest] <= SETTLED_NS]
-        return _median(self.positions_m[self.seen][around]) if len(around) else self.at(np.zeros(1))[0]
+        return median(self.positions_m[self.seen][around]) if len(around) else self.at(np.zeros(1))[0]
 
 
-def _median(positions_m: Array) -> Array:
-    median_m: Array = np.median(positions_m, axis=0)
-    return median_m
-
-
-def object_tracks(frames: Sequence[ObjectsSample], start_ns: int) -> list[ObjectTrack]:
-    """Collect the positions of each object, by id; stamps count from `start_ns`."""
-    tracks = []
-    for number in sorted({number for frame in frames for number in frame.positions_m}):
-        own = [frame for frame in frames if number in frame.positions_m]
-        track = ObjectTrack(
-            number,
-            own[-1].names[number],
-            np.array([frame.stamp_ns - start_ns for frame in own], dtype=np.float64),
-            np.stack([frame.positions_m[number] for frame in own]),
-            np.array([number not in frame.image_tracked for frame in own]),
-        )
-        tracks.append(track)
-    return tracks
+def object_tracks(sightings: Mapping[int, Sightings], frames: Sequence[ObjectsSample]) -> list[ObjectTrack]:
+    """Track each object by its number, under its last name in the frames."""
+    return [
+        ObjectTrack(number, next(frame.names[number] for frame in reversed(frames) if number in frame.names), *sighted)
+        for number, sighted in sightings.items()
+    ]
 
 
 def noise_m(positions_m: Array) -> float:
@@ -140,5 +139,5 @@ def noise_m(positions_m: Array) -> float:
     """
     if len(positions_m) < FEWEST_POSITIONS:
         return float(np.inf)
-    deviations_m = np.median(np.abs(np.diff(positions_m, 2, axis=0)), axis=0)
+    deviations_m = median(np.abs(np.diff(positions_m, 2, axis=0)))
     return float(np.linalg.norm(deviations_m) / (MAD_TO_STD * np.sqrt(6)))

@@ -64,6 +64,8 @@ def fill_occlusions(
 
 def _keep_grasped(track: ObjectTrack, hands: Sequence[HandTrack], settings: Settings) -> ObjectTrack:
     """Drop image-tracked positions that no grasping hand explains."""
+    if track.seen.all():
+        return track
     kept = track.seen.copy()
     for run in np.split(np.arange(len(kept)), np.flatnonzero(np.diff(kept)) + 1):
         if not track.seen[run[0]]:
