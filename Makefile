@@ -16,7 +16,7 @@ LOCKS := deploy/requirements
 
 install: $(STAMP)  ## make .venv with everything
 
-$(RUNS): pyproject.toml
+$(RUNS): pyproject.toml hatch_build.py shared/actum/_compiled.c
 	@$(PYTHON) -c 'import sys; sys.exit("actum needs Python 3.11 or newer: make PYTHON=python3.12 …" if sys.version_info < (3, 11) else 0)'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[actum-command]"

@@ -19,8 +19,9 @@ RUN pip install --quiet --no-compile --no-deps --require-hashes -r /build/${LOCK
     && find /packages -name '*.so' -not -path '*.libs/*' -exec strip --strip-unneeded {} + \
     && python -m compileall -q --invalidation-mode unchecked-hash /packages
 
-# This package, with all services.
+# This package, with all services, and its compiled steps.
 FROM builder AS actum
+RUN apt-get install --yes -qq --no-install-recommends gcc libc6-dev > /dev/null
 COPY . /build
 RUN pip install --quiet --no-compile --require-hashes -r /build/deploy/requirements/build.txt \
     && pip install --quiet --no-compile --no-deps --no-build-isolation /build --target /actum \

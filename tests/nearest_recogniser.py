@@ -134,7 +134,8 @@ class SlidingWindows(Spotter):
         return Spotted((found,))
 
     def _look(self, now_ns: int) -> None:
-        for window in self._recent.windows():
+        frames, firsts = self._recent.windows()
+        for window in (frames[first:] for first in firsts):
             answer = self._model.recognise(window, complete=True)
             is_best = answer.confidence > (self._best[0] if self._best else self._learned.threshold)
             if is_best and window[0].stamp_ns > self._done_ns:

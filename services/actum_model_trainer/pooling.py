@@ -12,7 +12,7 @@ from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.first_layer import FirstMaps
 from som_classifier.frame_activity import UM_PER_M
-from som_classifier.pyramid import Prefix, PrefixSums, Pyramid, quantised
+from som_classifier.pyramid import PrefixSums, Pyramid, quantised
 
 
 class PooledVectors(NamedTuple):
@@ -91,8 +91,8 @@ class _VariantSums:
         self._first, self._variants = pooling.first, variants
         self._left_handed = [pooling.mirrors and hand == "left" for hand in sample.acting_hands]
         steps_um = np.rint(sample.motion.sum(axis=1) * UM_PER_M).astype(np.int64)
-        self._travelled_um = [0, *np.cumsum(steps_um).tolist()]
-        self._prefixes: dict[tuple[int, bool], list[Prefix]] = {}
+        self._travelled_um = np.concatenate([[0], np.cumsum(steps_um)])
+        self._sums: dict[tuple[int, bool], PrefixSums] = {}
 
     def until(self, variant: int, fraction: float) -> PrefixSums:
         """Return the sums over the first share of a variant, as the live classifier would have them at that time.
@@ -102,13 +102,11 @@ class _VariantSums:
         total = len(self._left_handed)
         frames = min(total, max(MIN_FRAMES, round(fraction * total)))
         same_arm = self._left_handed[frames - 1] == self._left_handed[-1]
-        if (variant, same_arm) not in self._prefixes:
+        if (variant, same_arm) not in self._sums:
             as_read = self._variants[variant]
             sums = summed_activities(self._first, as_read if same_arm else as_read.mirrored)
-            self._prefixes[variant, same_arm] = [
-                Prefix([row], um) for row, um in zip(sums, self._travelled_um, strict=True)
-            ]
-        return PrefixSums(self._prefixes[variant, same_arm][: frames + 1])
+            self._sums[variant, same_arm] = PrefixSums(list(sums), self._travelled_um)
+        return self._sums[variant, same_arm].between(0, frames)
 
 
 def summed_activities(first: FirstMaps, variant: Variant) -> NDArray[np.uint32]:

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from actum.arrays import Array
+from actum.core import steps
 from actum.geometry import SMALLEST_M
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
@@ -22,8 +23,8 @@ VARIANCE_INFLATION = 2.0
 
 _SMALLEST = 1e-3
 """A mean of unit vectors that is shorter than this has no direction."""
-_LEFT = [INDEX["left_hip"], INDEX["left_shoulder"]]
-_RIGHT = [INDEX["right_hip"], INDEX["right_shoulder"]]
+_LEFT = np.array([INDEX["left_hip"], INDEX["left_shoulder"]], np.int32)
+_RIGHT = np.array([INDEX["right_hip"], INDEX["right_shoulder"]], np.int32)
 
 
 class HeadingFilter:
@@ -81,11 +82,15 @@ def _yaw_rad(left: tuple[float, float]) -> float:
 
 def _horizontal_left(joints: Array) -> tuple[float, float]:
     """Return the mean (camera x, z) of the unit vectors from right to left hip and shoulder, where both are known."""
+    if steps is not None:
+        known: tuple[float, float] | None = steps.left(np.ascontiguousarray(joints), _RIGHT, _LEFT, SMALLEST_M)
+        if known is not None:
+            return known
     across = joints[_LEFT] - joints[_RIGHT]
     lengths = np.sqrt(np.einsum("ij,ij->i", across, across))
-    known = lengths >= SMALLEST_M
-    if known.all():
+    long_enough = lengths >= SMALLEST_M
+    if long_enough.all():
         left = (across / lengths[:, None]).sum(axis=0) / 2
     else:
-        left = (across[known] / lengths[known, None]).sum(axis=0)
+        left = (across[long_enough] / lengths[long_enough, None]).sum(axis=0)
     return float(left[0]), float(left[2])

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from actum import geometry, keys, standard_body
+from actum import geometry, keys
 from actum.arrays import Array, joints_to_array, joints_to_list
 from actum.commands import Command
 from actum.limits import MOST_STREAMS
@@ -15,6 +15,7 @@ from actum.node import Counters, Tick
 from actum.parameters import LiveParameters
 from actum.skeletons import INDEX, JOINTS
 from actum.stamps import LostFrames, Order, StampGuard
+from pose_preprocessor.body import Body, body_of, body_of_known
 from pose_preprocessor.bridging import Bridge
 from pose_preprocessor.frame_checks import BadFrameError, check_frame
 from pose_preprocessor.heading import HeadingFilter
@@ -39,18 +40,18 @@ class _Person:
     motion: PartMotionFilter = field(default_factory=PartMotionFilter)
     heading: HeadingFilter = field(default_factory=HeadingFilter)
 
-    def upright(self, stamp_ns: int, metric_and_scaled: Array, up_in_camera: list[float] | None) -> Array:
+    def upright(self, stamp_ns: int, metric: Array, scaled: Array, up_in_camera: list[float] | None) -> Array:
         """Advance the heading by the metric joints, and return the scaled ones in the upright frame, (15, 3).
 
         Args:
             stamp_ns: of the frame.
-            metric_and_scaled: (2, 15, 3), camera frame.
+            metric: (15, 3), camera frame.
+            scaled: the same with standard bones.
             up_in_camera: the direction against gravity, camera frame; None where the camera is level.
         """
-        level = metric_and_scaled
         if up_in_camera is not None:
-            level = level @ geometry.untilted_from_camera(up_in_camera).T
-        metric, scaled = level
+            level_from_camera = geometry.untilted_from_camera(up_in_camera)
+            metric, scaled = metric @ level_from_camera.T, scaled @ level_from_camera.T
         return geometry.upright(scaled, *self.heading.step(stamp_ns, metric))
 
 
@@ -127,41 +128,43 @@ class PosePreprocessor:
         missing = [index for index, joint in enumerate(agent.joints) if joint is None]
         person = self._persons.setdefault(agent.agent, _Person())
         measured = joints_to_array(agent.joints)
-        bridged = self._usable(frame.stamp_ns, agent, person, measured, missing)
-        metric_and_scaled = np.stack([bridged, standard_body.scaled(bridged)])
-        ego_from_camera = geometry.ego_from_camera(metric_and_scaled)
-        metric_ego, scaled_ego = geometry.apply(ego_from_camera, metric_and_scaled)
-        person.joints = agent.joints
-        person.bridge.keep(frame.stamp_ns, bridged, missing)
-        self._missing.note(frame.stamp_ns, [JOINTS[index] for index in missing])
-        metric_ego[[index for index in missing if index not in ALWAYS]] = np.nan
-        measured[_TORSO] = bridged[_TORSO]
-        return Posture(
-            **self._common_fields(frame, agent.agent, missed, present),
-            joints_m=joints_to_list(metric_ego),
-            joints=joints_to_list(scaled_ego),
-            upright=joints_to_list(person.upright(frame.stamp_ns, metric_and_scaled, frame.up_in_camera)),
-            ego_from_camera=geometry.flat(ego_from_camera[0]),
-            motion=person.motion.step(frame.stamp_ns, measured),
-            depth_std_m=agent.depth_std_m,
-            up_in_camera=frame.up_in_camera,
-        )
-
-    def _usable(self, stamp_ns: int, agent: Agent, person: _Person, measured: Array, missing: list[int]) -> Array:
-        """Return the joints (15, 3) with missing ones bridged where that is possible.
-
-        Raises:
-            BadFrameError: they cannot be used, or are those of the frame before.
-        """
-        bridged = person.bridge.filled(stamp_ns, measured, missing) if missing else measured
-        unknown = [index for index in missing if np.isnan(bridged[index, 0])]
-        check_frame(bridged, unknown, self._settings.reach_limit_m, self._settings.bone_limit_m)
+        bridged = person.bridge.filled(frame.stamp_ns, measured, missing) if missing else measured
+        body = self._body(bridged, missing)
         if agent.joints == person.joints:
             raise BadFrameError(
                 "repeated_joints",
                 "all joints equal those of the previous frame, so the sensor lost the person or is frozen",
             )
-        return bridged
+        person.joints = agent.joints
+        person.bridge.keep(frame.stamp_ns, bridged, missing)
+        self._missing.note(frame.stamp_ns, [JOINTS[index] for index in missing])
+        if missing:
+            body.metric_ego[[index for index in missing if index not in ALWAYS]] = np.nan
+            measured[_TORSO] = bridged[_TORSO]
+        return Posture(
+            **self._common_fields(frame, agent.agent, missed, present),
+            joints_m=joints_to_list(body.metric_ego),
+            joints=joints_to_list(body.scaled_ego),
+            upright=joints_to_list(person.upright(frame.stamp_ns, bridged, body.scaled, frame.up_in_camera)),
+            ego_from_camera=geometry.flat(body.ego_from_camera),
+            motion=person.motion.step(frame.stamp_ns, measured),
+            depth_std_m=agent.depth_std_m,
+            up_in_camera=frame.up_in_camera,
+        )
+
+    def _body(self, joints: Array, missing: list[int]) -> Body:
+        """Return the body of joints (15, 3), of which missing ones are bridged where that is possible.
+
+        Raises:
+            BadFrameError: they cannot be used.
+            DegenerateError: the egocentric frame is not defined.
+        """
+        limits_m = self._settings.reach_limit_m, self._settings.bone_limit_m
+        body = None if missing else body_of_known(joints, *limits_m)
+        if body is None:
+            check_frame(joints, [index for index in missing if np.isnan(joints[index, 0])], *limits_m)
+            body = body_of(joints)
+        return body
 
     def _invalid(self, frame: Skeleton, agent: int, reason: str, missed: int, present: list[int]) -> Posture:
         return Posture(

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from actum.arrays import Array
+from actum.core import steps
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX, PARTS
 
@@ -15,6 +16,8 @@ TIME_CONSTANT_S = 0.3
 _IN_PART = np.array([[joint in part for joint in range(len(INDEX))] for part in PARTS.values()], dtype=np.float64)
 _PART_SIZES = _IN_PART.sum(axis=1)
 _TORSO = INDEX["torso"]
+_PART_OF = _IN_PART.argmax(axis=0).astype(np.int32)
+"""The part of each joint, (15,)."""
 
 
 class PartMotionFilter:
@@ -47,15 +50,20 @@ class PartMotionFilter:
             self._smooth = relative
             return [0.0] * len(PARTS)
         elapsed_ns = stamp_ns - before_ns
-        gain = 1.0 - float(np.exp(-elapsed_ns / SECOND_NS / TIME_CONSTANT_S))
-        steps = gain * (relative - self._smooth)
-        lengths = np.sqrt(np.einsum("ij,ij->i", steps, steps))
+        gain = 1.0 - math.exp(-elapsed_ns / SECOND_NS / TIME_CONSTANT_S)
+        if steps is not None and not math.isnan((relative - self._smooth).sum()):
+            parts_motion = np.empty(len(PARTS))
+            steps.moved(joints, self._smooth, _TORSO, gain, _PART_OF, parts_motion)
+            known_means: list[float] = parts_motion.tolist()
+            return known_means
+        by = gain * (relative - self._smooth)
+        lengths = np.sqrt(np.einsum("ij,ij->i", by, by))
         if math.isnan(lengths.sum()):
-            self._smooth = np.where(np.isnan(steps), relative, self._smooth + steps)
+            self._smooth = np.where(np.isnan(by), relative, self._smooth + by)
             known = ~np.isnan(lengths)
             motion = _IN_PART @ np.where(known, lengths, 0.0) / np.maximum(_IN_PART @ known, 1.0)
         else:
-            self._smooth = self._smooth + steps
+            self._smooth = self._smooth + by
             motion = _IN_PART @ lengths / _PART_SIZES
         means: list[float] = motion.tolist()
         return means

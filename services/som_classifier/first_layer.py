@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
@@ -67,9 +68,23 @@ MAP_INPUTS: Mapping[str, Callable[[Floats], Floats]] = {
 """The maps by name, in the order in which they are trained: what each is shown (n, dim) of `frame_inputs` (n, 90)."""
 INPUT_SIZES = {name: inputs_of(np.zeros((1, 2 * _SIZE))).shape[1] for name, inputs_of in MAP_INPUTS.items()}
 """The dimension of each map, by its name."""
+_MINUEND = np.concatenate([np.arange(2 * _SIZE), _ARM_COLUMNS]).astype(np.int32)
+_SUBTRAHEND = np.concatenate([np.full(2 * _SIZE, -1), _SHOULDER_COLUMNS]).astype(np.int32)
+_FACTORS = np.concatenate([np.ones(2 * _SIZE), _WEIGHTS])
+"""The inputs of all maps, as the compiled steps read them: a column of `frame_inputs`, less another one where there is
+one (-1 else), times a factor."""
+MIRRORED_FRAME = _MIRROR.astype(np.int32), _SIGNS
+"""For each column of `frame_inputs` the one of which it is the mirror image, and the sign."""
+MIRRORED_POSTURE = MIRRORED_FRAME[0][:_SIZE], _SIGNS[:_SIZE]
+"""The same for a posture alone."""
 ACTING_ARM, OTHER_ARM = Channel("arms"), Channel("arms", mirrored=True)
 CHANNELS = (Channel("postures"), Channel("velocities"), ACTING_ARM, OTHER_ARM)
 """The blocks of a frame's activity, in this order; the arm map answers for both arms."""
+_CHANNEL_MAPS = tuple(
+    np.array(each, np.int32)
+    for each in zip(*[(list(MAP_INPUTS).index(name), mirrored) for name, mirrored in CHANNELS], strict=True)
+)
+"""The number of each channel's map, and whether it is shown the mirror image."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,6 +165,14 @@ class FirstMaps:
         blocks = [of_map[name][::-1] if mirrored else of_map[name] for name, mirrored in CHANNELS]
         return self._normalised(np.concatenate(blocks, axis=1))
 
+    def unnormalised_activities(self, steps: ModuleType, posture: Floats, velocity: Floats) -> NDArray[np.float32]:
+        """Return the same before the sums are divided by, of a frame whose joints are all known, by compiled steps."""
+        together, centred = self._together, np.empty((2, len(_MINUEND)), np.float32)
+        steps.map_inputs(posture, velocity, *MIRRORED_FRAME, _MINUEND, _SUBTRAHEND, _FACTORS, together.centre, centred)
+        activities = np.empty((2, self.units), np.float32)
+        steps.exponents(together.products(centred), together.half_norms2, *_CHANNEL_MAPS, self._slopes, activities)
+        return np.exp(activities, out=activities)
+
     def _partly_known(self, rows: Floats) -> Floats:
         """Return d² − d²_min of each map for rows (2, 90) with missing components, shape (2, maps, units)."""
         inputs = [(self.maps[name], inputs_of(rows)) for name, inputs_of in MAP_INPUTS.items()]
@@ -160,7 +183,7 @@ class FirstMaps:
         activities = excess2s.reshape(len(excess2s), len(CHANNELS), -1)
         activities *= self._slopes
         np.exp(activities, out=activities)
-        activities *= self._shares / activities.sum(axis=2, keepdims=True)
+        activities *= self.shares / activities.sum(axis=2, keepdims=True)
         return activities.reshape(excess2s.shape)
 
     @cached_property
@@ -172,7 +195,13 @@ class FirstMaps:
         return (-1 / np.array([self.contrasts[name] for name, _ in CHANNELS]))[:, None].astype(np.float32)
 
     @cached_property
-    def _shares(self) -> NDArray[np.float32]:
+    def posture_weights(self) -> NDArray[np.float32]:
+        """The weights of the map of postures, (units, 45), one after the other in memory."""
+        return np.ascontiguousarray(self.postures.weights, np.float32)
+
+    @cached_property
+    def shares(self) -> NDArray[np.float32]:
+        """The sum of each channel's activity, (channels, 1)."""
         shares = dict(zip((ACTING_ARM, OTHER_ARM), self.arm_shares, strict=True))
         return np.array([shares.get(channel, 1.0) for channel in CHANNELS], np.float32)[:, None]
 

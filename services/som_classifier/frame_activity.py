@@ -5,16 +5,20 @@ A sum over a segment is the difference of two prefix sums, so that its cost does
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Array
+from actum.core import steps
 from actum.skeletons import JOINTS
 from som_classifier.attention import PART_NAMES
-from som_classifier.first_layer import FirstMaps
+from som_classifier.first_layer import MIRRORED_POSTURE, SMALLEST_ERROR2, FirstMaps
 from som_classifier.frames import Frame
-from som_classifier.handedness import LIMBS, MOMENTS, LimbSpreads, limb_moments, mirrored
-from som_classifier.pyramid import Prefix, PrefixSums, Sums, quantised
+from som_classifier.handedness import COMPONENTS, LIMBS, MOMENTS, LimbSpreads, limb_moments, mirrored
+from som_classifier.kinematics import Kinematics
+from som_classifier.pyramid import SCALE, Prefix, PrefixSums, Sums, quantised
 
 Totals = NDArray[np.int64]
 """Prefix sums of whole numbers: the displacement of each part (5; µm), the moments of the limbs (4 * 8), the number of
@@ -24,6 +28,7 @@ _PARTS = slice(0, len(PART_NAMES))
 _LIMBS = slice(_PARTS.stop, _PARTS.stop + LIMBS * MOMENTS)
 _MISSING = _LIMBS.stop
 _LOG_ERRORS = slice(_MISSING + 1, _MISSING + 3)
+_LIMB_COMPONENTS = COMPONENTS.astype(np.int32)
 UM_PER_M = 1e6
 """Micrometres in a metre: displacements are added up in whole ones."""
 _MILLIONTHS = 1e6
@@ -61,31 +66,56 @@ class FrameEncoder:
     def encode(self, frame: Frame) -> FrameActivity:
         """Add a valid frame and return its activity."""
         assert frame.kinematics is not None and frame.motion is not None
-        posture = frame.kinematics.posture
-        activities = self._first.frame_activities(posture, frame.kinematics.velocity)
-        winner, mirror_winner = activities[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
-        log_errors = self._first.log_errors(np.stack([posture, mirrored(posture)]), [winner, mirror_winner])
-        moved_um = np.rint(frame.motion * UM_PER_M).astype(np.int64)
         before, totals_before = self._prefix, self._totals
+        if steps is None or frame.missing or self._first.postures.dtype != np.float32:
+            winners = self._add(frame, frame.kinematics, frame.motion)
+        else:
+            winners = self._add_compiled(steps, frame.kinematics, frame.motion)
+        moved_um = (self._totals[_PARTS] - totals_before[_PARTS]).tolist()
+        self._prefix = Prefix(tuple(self._sums), before.travelled_um + sum(moved_um))
+        return FrameActivity(before, self._prefix, totals_before, self._totals, (winners[0], winners[1]))
+
+    def _add(self, frame: Frame, kinematics: Kinematics, motion: Array) -> list[int]:
+        """Add a frame to the sums and return its winners on the posture map, as seen and mirrored."""
+        posture = kinematics.posture
+        activities = self._first.frame_activities(posture, kinematics.velocity)
+        winners: list[int] = activities[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
+        log_errors = self._first.log_errors(np.stack([posture, mirrored(posture)]), winners)
         self._sums = self._sums + quantised(activities)
-        self._prefix = Prefix(tuple(self._sums), before.travelled_um + sum(moved_um.tolist()))
-        self._totals = totals_before.copy()
-        self._totals[_PARTS] += moved_um
+        self._totals = self._totals.copy()
+        self._totals[_PARTS] += np.rint(motion * UM_PER_M).astype(np.int64)
         self._totals[_LIMBS] += limb_moments(posture).ravel()
         self._totals[_MISSING] += len(frame.missing)
         self._totals[_LOG_ERRORS] += np.rint(log_errors * _MILLIONTHS).astype(np.int64)
-        return FrameActivity(before, self._prefix, totals_before, self._totals, (winner, mirror_winner))
+        return winners
+
+    def _add_compiled(self, steps: ModuleType, kinematics: Kinematics, motion: Array) -> list[int]:
+        """Do the same for a frame whose joints are all known."""
+        posture, velocity = np.ascontiguousarray(kinematics.posture), np.ascontiguousarray(kinematics.velocity)
+        before, totals_before, winners = self._sums, self._totals, np.empty(2, np.int64)
+        activities = self._first.unnormalised_activities(steps, posture, velocity)
+        self._sums, self._totals = np.empty_like(before), np.empty_like(totals_before)
+        steps.accumulated(activities, self._first.shares, SCALE, before, self._sums, winners)
+        steps.totals(
+            totals_before, np.ascontiguousarray(motion), posture, *MIRRORED_POSTURE, self._first.posture_weights,
+            winners, _LIMB_COMPONENTS, SMALLEST_ERROR2, self._totals,
+        )  # fmt: skip
+        chosen: list[int] = winners.tolist()
+        return chosen
 
 
 def segment_sums(frames: Sequence[FrameActivity], in_mirror: bool) -> PrefixSums:
     """Return a segment's prefix sums of activity, of the actor as seen or mirrored."""
-    return PrefixSums([frames[0].before, *[frame.after for frame in frames]], int(in_mirror))
+    prefixes, side = [frames[0].before, *[frame.after for frame in frames]], int(in_mirror)
+    return PrefixSums([at.sums[side] for at in prefixes], np.array([at.travelled_um for at in prefixes]))
 
 
 def left_handed(frames: Sequence[FrameActivity]) -> bool:
-    """Tell whether the left arm acts."""
-    limbs = (frames[-1].totals_after - frames[0].totals_before)[_LIMBS].reshape(LIMBS, MOMENTS)
-    return LimbSpreads.of(limbs).left_handed
+    """Tell whether the left arm acts over a segment, of which only the first and the last frame matter."""
+    before, after = frames[0].totals_before[_LIMBS], frames[-1].totals_after[_LIMBS]
+    if steps is not None:
+        return LimbSpreads(steps.spreads(before, after)).left_handed
+    return LimbSpreads.of((after - before).reshape(LIMBS, MOMENTS)).left_handed
 
 
 def most_moved_part(frames: Sequence[FrameActivity]) -> str:

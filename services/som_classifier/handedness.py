@@ -27,7 +27,8 @@ _LIMBS = np.array(
         )
     ]
 )
-_COMPONENTS = (3 * _LIMBS[..., None] + np.arange(3)).reshape(LIMBS, -1)
+COMPONENTS = (3 * _LIMBS[..., None] + np.arange(3)).reshape(LIMBS, -1)
+"""The coordinates of each limb among the 45 of a posture, (4, 6)."""
 _RIGHT_ARM = 0
 _LEFT_ARM = 1
 _UNITS_PER_M = 1000
@@ -51,20 +52,20 @@ def mirrored(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def limb_moments(posture: NDArray[np.float64]) -> Integers:
-    """Return the first and second moments of each limb, of which its spread over a segment is computed, shape (4, 8).
+    """Return the first and second moments of each limb, of which its spread over a segment is computed, (…, 4, 8).
 
     They are the six coordinates of its two joints in whole millimetres, the sum of their squares, and 1; all 0 where a
     joint is missing. Being integers they add up to the same sums in any order.
 
     Args:
-        posture: (15, 3), metres, NaN where a joint is missing.
+        posture: (…, 15, 3), metres, NaN where a joint is missing.
     """
-    result = np.empty((LIMBS, MOMENTS))
-    limbs = result[:, :6]
-    np.rint(posture.ravel()[_COMPONENTS] * _UNITS_PER_M, out=limbs)
-    np.einsum("ij,ij->i", limbs, limbs, out=result[:, 6])
-    result[:, 7] = 1.0
-    missing = np.isnan(result[:, 6])
+    result = np.empty((*posture.shape[:-2], LIMBS, MOMENTS))
+    limbs = result[..., :6]
+    np.rint(posture.reshape(*posture.shape[:-2], -1)[..., COMPONENTS] * _UNITS_PER_M, out=limbs)
+    np.einsum("...ij,...ij->...i", limbs, limbs, out=result[..., 6])
+    result[..., 7] = 1.0
+    missing = np.isnan(result[..., 6])
     if missing.any():
         result[missing] = 0.0
     return result.astype(np.int64)

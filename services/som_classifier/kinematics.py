@@ -1,11 +1,13 @@
 """Smoothed positions and velocities of one agent's joints, frame by frame, and how far a person moves in a segment."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Mask
+from actum.core import steps
 from actum.node import SECOND_NS
 
 GAP_NS = SECOND_NS // 2
@@ -61,11 +63,26 @@ class KinematicsFilter:
             self._speed = np.zeros(joints.shape)
             return Kinematics(joints, joints - joints)
         if known.all() and self._known.all():
-            self._advance(joints, (stamp_ns - last_ns) / SECOND_NS)
-            return Kinematics(self._smooth, self._smooth - self._lagging)
+            velocity = self._advance(joints, (stamp_ns - last_ns) / SECOND_NS)
+            return Kinematics(self._smooth, velocity)
         return self._advance_known(joints, known, (stamp_ns - last_ns) / SECOND_NS)
 
-    def _advance(self, joints: Array, elapsed_s: float) -> None:
+    def _advance(self, joints: Array, elapsed_s: float) -> Array:
+        """Advance the filter; return the velocities (15, 3)."""
+        if steps is None:
+            return self._advanced(joints, elapsed_s)
+        joints, advanced = np.ascontiguousarray(joints), np.empty((4, *joints.shape))
+        gain, decay = 1 - math.exp(-elapsed_s / SPEED_TIME_CONSTANT_S), math.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
+        steps.smoothed(
+            joints, self._before, self._speed, self._smooth, self._lagging, elapsed_s, gain, STILL_TIME_CONSTANT_S,
+            STILL_SPEED_MPS, LAG_TIME_CONSTANT_S, decay, advanced,
+        )  # fmt: skip
+        self._before = joints
+        self._speed, self._smooth, self._lagging = advanced[:3]
+        velocity: Array = advanced[3]
+        return velocity
+
+    def _advanced(self, joints: Array, elapsed_s: float) -> Array:
         velocity = (joints - self._before) / elapsed_s
         self._speed = self._speed + (1 - np.exp(-elapsed_s / SPEED_TIME_CONSTANT_S)) * (velocity - self._speed)
         speeds = np.sqrt(np.einsum("ij,ij->i", self._speed, self._speed))
@@ -74,6 +91,7 @@ class KinematicsFilter:
         step = gains[:, None] * (joints - self._smooth)
         self._lagging = _lagged(self._lagging, self._smooth, step, elapsed_s)
         self._smooth = self._smooth + step
+        return self._smooth - self._lagging
 
     def _advance_known(self, joints: Array, known: Mask, elapsed_s: float) -> Kinematics:
         """Advance while joints are missing: their state is kept, and the filters of those that come back restart."""
@@ -84,9 +102,9 @@ class KinematicsFilter:
         self._lagging = np.where(returned, present, self._lagging)
         self._speed = np.where(known[:, None] & ~returned, self._speed, 0.0)
         self._known = known
-        self._advance(present, elapsed_s)
+        velocity = self._advance(present, elapsed_s)
         missing = np.where(known, 0.0, np.nan)[:, None]
-        return Kinematics(self._smooth + missing, self._smooth - self._lagging + missing)
+        return Kinematics(self._smooth + missing, velocity + missing)
 
 
 def _lagged(lagging: Array, start: Array, step: Array, elapsed_s: float) -> Array:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Floats, Indices
+from actum.core import steps
 
 Sums = NDArray[np.uint32]
 
@@ -42,42 +43,41 @@ class Prefix:
 
 @dataclass(frozen=True, eq=False)
 class PrefixSums:
-    """The prefix sums of a segment of n frames.
+    """The prefix sums of a segment of n frames, before, between and after its frames.
 
     Attributes:
-        prefixes: the n + 1 before, between and after its frames.
-        side: which of their sums are read: 0 for the actor as seen, 1 for the mirror image.
+        sums: of quantised activities modulo 2³², n + 1 times (units,).
+        travelled_um: (n + 1,), of the displacements of all body parts, micrometres.
     """
 
-    prefixes: Sequence[Prefix]
-    side: int = 0
+    sums: list[Sums]
+    travelled_um: NDArray[np.int64]
 
     def __len__(self) -> int:
-        return len(self.prefixes) - 1
+        return len(self.sums) - 1
 
-    def until(self, frames: int) -> "PrefixSums":
-        """Return the prefix sums of the segment's first `frames` frames."""
-        return PrefixSums(self.prefixes[: frames + 1], self.side)
+    def between(self, first: int, after: int) -> "PrefixSums":
+        """Return the prefix sums of the frames from `first` up to the one before `after`."""
+        return PrefixSums(self.sums[first : after + 1], self.travelled_um[first : after + 1])
 
     def since_start(self, at: Sequence[int]) -> NDArray[np.unsignedinteger]:
         """Return the quantised activities summed up to each of the instants `at` (0 to n), shape (len(at), units)."""
         if len(self) > MOST_FRAMES:
             return self._since_start_in_runs(at)
         sums = self._sums(at)
-        sums -= self.prefixes[0].sums[self.side]
+        sums -= self.sums[0]
         return sums
 
     def _since_start_in_runs(self, at: Sequence[int]) -> NDArray[np.uint64]:
         """Return the same for segments over which a sum may wrap around 2³² more than once."""
-        run_starts = self._sums(range(0, len(self.prefixes), MOST_FRAMES))
+        run_starts = self._sums(range(0, len(self.sums), MOST_FRAMES))
         before = np.cumsum(np.diff(run_starts, axis=0, prepend=run_starts[:1]), axis=0, dtype=np.uint64)
         run = [k // MOST_FRAMES for k in at]
         summed: NDArray[np.uint64] = before[run] + (self._sums(at) - run_starts[run])
         return summed
 
     def _sums(self, at: Sequence[int]) -> Sums:
-        prefixes, side = self.prefixes, self.side
-        return np.concatenate([prefixes[k].sums[side] for k in at]).reshape(len(at), -1)
+        return np.concatenate([self.sums[k] for k in at]).reshape(len(at), -1)
 
     def instants_of(self, progress: Sequence[float]) -> Floats:
         """Return the instants, as fractional frame numbers from 0 to n, at which a segment reaches given progress.
@@ -88,11 +88,10 @@ class PrefixSums:
         Args:
             progress: (k,); the result has the same shape.
         """
-        begin_um = self.prefixes[0].travelled_um
-        moved_um = self.prefixes[-1].travelled_um - begin_um
+        so_far_um, frames = self.travelled_um - self.travelled_um[0], np.arange(len(self.sums))
+        moved_um = int(so_far_um[-1])
         per_frame, per_um = (0.5 / len(self), 0.5 / moved_um) if moved_um > 0 else (1.0 / len(self), 0.0)
-        reached = [per_frame * k + per_um * (at.travelled_um - begin_um) for k, at in enumerate(self.prefixes)]
-        instants: Floats = np.interp(progress, reached, np.arange(len(self.prefixes)))
+        instants: Floats = np.interp(progress, per_frame * frames + per_um * so_far_um, frames)
         return instants
 
 
@@ -124,6 +123,14 @@ class Pyramid:
         """
         if not len(segment):
             raise ValueError("the segment contains no frame")
+        if steps is None or len(segment) > MOST_FRAMES:
+            return self._vector(segment)
+        vector = np.empty(self.cells * len(segment.sums[0]), np.float32)
+        borders, begins, ends = self._compiled
+        steps.pooled(segment.sums, segment.travelled_um, borders, begins, ends, SCALE, vector)
+        return vector
+
+    def _vector(self, segment: PrefixSums) -> NDArray[np.float32]:
         at = segment.instants_of(self._borders)
         below = np.minimum(at.astype(np.intp), len(segment) - 1)
         sums, growth = (
@@ -137,6 +144,11 @@ class Pyramid:
         pooled /= ((at[self._ends] - at[self._begins]) * SCALE).astype(np.float32)[:, None]
         np.sqrt(np.sqrt(pooled, out=pooled), out=pooled)
         return pooled.ravel()
+
+    @cached_property
+    def _compiled(self) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
+        """Borders, and at which of them each cell begins and ends, as the compiled steps read them."""
+        return np.array(self._borders), self._begins.astype(np.int32), self._ends.astype(np.int32)
 
     @cached_property
     def _spans(self) -> list[tuple[float, float]]:

@@ -171,9 +171,20 @@ class PyramidModel(Model):
         pool, learned = PoolingOnce(self.pooled), SpottingModel(self.heads, self.metadata.spotting)
         return [PyramidSpotter(pool, self.labels, learned, options) for options in asked]
 
-    def pooled(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
-        """Return the pyramid vector of valid frames, each with the activity that its encoder gave, (inputs,)."""
-        return self.pyramid.vector(self.prefix_sums([frame.activity for frame in frames]))
+    def pooled(self, frames: Sequence[Frame], firsts: Sequence[int]) -> list[NDArray[np.float32]]:
+        """Return the pyramid vectors (inputs,) of windows that begin at some of these frames and end with the last.
+
+        Args:
+            frames: valid, each with the activity that its encoder gave.
+            firsts: the index of each window's first frame.
+        """
+        activities = [frame.activity for frame in frames]
+        sides = [int(self.reads_in_mirror((activities[first], activities[-1]))) for first in firsts]
+        sums = {side: segment_sums(activities, bool(side)) for side in set(sides)}
+        return [
+            self.pyramid.vector(sums[side].between(first, len(frames)))
+            for side, first in zip(sides, firsts, strict=True)
+        ]
 
     def prefix_sums(self, activities: Sequence[FrameActivity]) -> PrefixSums:
         """Return a segment's prefix sums, of the actor as seen or mirrored."""

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,11 @@ class StageDiscriminants:
     log_duration_mean: float
     log_duration_sd: float
 
+    @cached_property
+    def _axes_in_turn(self) -> list[NDArray[np.float32]]:
+        """The axes of each stage, one after the other in memory: products with one vector are then faster."""
+        return [np.asfortranarray(axes) for axes in self.axes]
+
     def weights(self, elapsed_s: float, complete: bool) -> Sequence[float]:
         """Return the probability of each stage: 1 for the last where the segment is complete, else by elapsed time.
 
@@ -59,7 +65,7 @@ class StageDiscriminants:
             weights: (stages,), as `weights` returns them.
         """
         total = np.zeros(self.offsets.shape[1], np.float32)
-        for axes, offsets, weight in zip(self.axes, self.offsets, weights, strict=True):
+        for axes, offsets, weight in zip(self._axes_in_turn, self.offsets, weights, strict=True):
             if weight:
                 total += np.float32(weight) * (row_matmul(vector, axes) + offsets)
         return total

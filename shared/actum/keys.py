@@ -24,7 +24,7 @@ class InvalidKeyError(ValueError):
     """A key, or one of its chunks, does not fit the table of topics."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Topic:
     """One row of the table: what a key carries and how it is sent.
 
@@ -91,6 +91,10 @@ TOPICS: tuple[Topic, ...] = (
 )
 _BY_PREFIX = {topic.leaf.removesuffix("/{}"): topic for topic in TOPICS}
 """Topics by their leaf without `/{}`, such as `posture`."""
+_BY_SCHEMA = {topic.message.SCHEMA: topic for topic in TOPICS if topic.message is not m.Image}
+"""Topics by their messages' schema; images have two."""
+_NAMED_BY = {POSTURE: "agent", ACTION: "agent", HELD_BACK: "agent", EVENT: "agent", STATUS: "service", INFO: "service"}
+"""The field that gives the last chunk of the key, for the topics whose keys have one."""
 
 
 @dataclass(frozen=True)
@@ -206,16 +210,11 @@ def parse(text: str) -> Address:
 
 def address_of(message: m.Message) -> Address:
     """Return the parsed form of the key that a message is put on."""
-    sensor = message.sensor
-    match message:
-        case m.Image():
-            return Address(DEPTH if message.format == "depth16_mm" else COLOR, sensor, None)
-        case m.Posture() | m.Action() | m.HeldBack() | m.Event():
-            return Address(_BY_PREFIX[message.SCHEMA.removeprefix("actum.")], sensor, str(message.agent))
-        case m.Status() | m.Info():
-            return Address(_BY_PREFIX[message.SCHEMA.removeprefix("actum.")], sensor, message.service)
-        case _:
-            return Address(_BY_PREFIX[message.SCHEMA.removeprefix("actum.")], sensor, None)
+    if isinstance(message, m.Image):
+        return Address(DEPTH if message.format == "depth16_mm" else COLOR, message.sensor, None)
+    topic = _BY_SCHEMA[message.SCHEMA]
+    named_by = _NAMED_BY.get(topic)
+    return Address(topic, message.sensor, None if named_by is None else str(getattr(message, named_by)))
 
 
 def key_of(message: m.Message) -> str:

@@ -91,7 +91,8 @@ def test_the_vector_of_any_window_is_that_of_the_live_model(
     for first, length in zip(rng.integers(0, len(frames) - 5, 50), rng.integers(4, 60, 50), strict=True):
         window = frames[first : first + length]
         mean_activities = [
-            v.astype(np.float64) ** 4 for v in (encoded.vector(first, first + len(window) - 1), model.pooled(window))
+            v.astype(np.float64) ** 4
+            for v in (encoded.vector(first, first + len(window) - 1), *model.pooled(window, [0]))
         ]
         np.testing.assert_allclose(*mean_activities, rtol=3e-5, atol=2 / SCALE)
 
@@ -102,9 +103,9 @@ class Looking:
     def __init__(self, model: PyramidModel) -> None:
         self.model, self.seen = model, [(0, 0)]
 
-    def pooled(self, frames: Sequence[Frame]) -> np.ndarray:
-        self.seen.append((frames[0].stamp_ns, frames[-1].stamp_ns))
-        return self.model.pooled(frames)
+    def pooled(self, frames: Sequence[Frame], firsts: Sequence[int]) -> list[np.ndarray]:
+        self.seen += [(frames[first].stamp_ns, frames[-1].stamp_ns) for first in firsts]
+        return self.model.pooled(frames, firsts)
 
 
 def test_training_counts_false_alarms_over_the_windows_that_the_live_search_looks_at(

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from som_classifier.pyramid import MOST_FRAMES, SCALE, Prefix, PrefixSums, Pyramid, quantised
+from som_classifier.pyramid import MOST_FRAMES, SCALE, PrefixSums, Pyramid, quantised
 
 UNITS = 4
 PLAIN = Pyramid((1, 2, 4), 0.0)
@@ -17,8 +17,7 @@ def trail(activities: np.ndarray, steps_um: np.ndarray | None = None, begun: int
     steps = np.zeros(len(activities), np.int64) if steps_um is None else steps_um
     running = np.concatenate([np.zeros((1, activities.shape[1]), np.uint32), quantised(activities)])
     sums = np.cumsum(running, axis=0, dtype=np.uint32) + np.uint32(begun)
-    travelled_um = [far_um, *(far_um + np.cumsum(steps)).tolist()]
-    return PrefixSums([Prefix([own], so_far_um) for own, so_far_um in zip(sums, travelled_um, strict=True)])
+    return PrefixSums(list(sums), np.array([far_um, *(far_um + np.cumsum(steps))]))
 
 
 def random_activities(frames: int, seed: int = 0) -> np.ndarray:
@@ -79,10 +78,10 @@ def test_when_the_summing_began_does_not_matter_to_the_bit(frames: int, begun: i
 def test_a_window_of_a_long_trail_is_the_same_as_alone_to_the_bit(before: int, frames: int) -> None:
     activities, steps = random_activities(before + frames), random_steps(before + frames)
     whole = trail(activities, steps)
-    window = PrefixSums(whole.prefixes[before:])
+    window = whole.between(before, len(whole))
     alone = trail(activities[before:], steps[before:])
     np.testing.assert_array_equal(OVERLAPPING.vector(window), OVERLAPPING.vector(alone))
-    begun = whole.until(before + 1)
+    begun = whole.between(0, before + 1)
     np.testing.assert_array_equal(
         OVERLAPPING.vector(begun), OVERLAPPING.vector(trail(activities[: before + 1], steps[: before + 1]))
     )

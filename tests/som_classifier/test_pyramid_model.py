@@ -140,7 +140,7 @@ def test_left_handed_segments_are_read_in_the_mirror() -> None:
         activities = [frame.activity for frame in encoded(model(), sample)]
         side = 1 if sample.label == "swing" else 0
         sums = model().prefix_sums(activities)
-        read = np.stack([prefix.sums[sums.side] for prefix in sums.prefixes[1:]])
+        read = np.stack(sums.sums[1:])
         np.testing.assert_array_equal(read, np.stack([activity.after.sums[side] for activity in activities]))
 
 

@@ -28,9 +28,14 @@ def after(stamps_ms: Iterable[int], durations_s: Sequence[float] = DURATIONS_S) 
     return recent
 
 
+def windows_of(recent: RecentFrames) -> list[list[Frame]]:
+    frames, firsts = recent.windows()
+    return [frames[first:] for first in firsts]
+
+
 def windows_ms(stamps_ms: Iterable[int], durations_s: Sequence[float] = DURATIONS_S) -> list[tuple[int, int, int]]:
     """First and last stamp (ms) and number of frames of each window."""
-    windows = after(stamps_ms, durations_s).windows()
+    windows = windows_of(after(stamps_ms, durations_s))
     return [(each[0].stamp_ns // MS, each[-1].stamp_ns // MS, len(each)) for each in windows]
 
 
@@ -90,6 +95,6 @@ def test_every_window_holds_all_frames_from_its_first_to_the_newest_and_no_gap(s
 
 def _with_durations(recent: RecentFrames) -> tuple[list[list[Frame]], list[float]]:
     """The windows, and the duration of each: no window may stand for two of these."""
-    windows = recent.windows()
+    windows = windows_of(recent)
     lasting_s = [(each[-1].stamp_ns - each[0].stamp_ns) / SECOND_NS for each in windows]
     return windows, [min(d for d in DURATIONS_S if d >= lasted_s) for lasted_s in lasting_s]

@@ -8,7 +8,7 @@ from actum_model_trainer.pooling import summed_activities
 from actum_model_trainer.samples import LabelledStream
 from som_classifier.frame_activity import UM_PER_M
 from som_classifier.handedness import LimbSpreads, limb_moments
-from som_classifier.pyramid import Prefix, PrefixSums
+from som_classifier.pyramid import PrefixSums
 from som_classifier.pyramid_model import PyramidModel
 
 
@@ -25,17 +25,14 @@ class EncodedStream:
         self._pyramid, self._mirrors = model.pyramid, model.metadata.mirrors
         seen = variant or Variant(stream.postures, stream.velocities)
         sides = [seen, seen.mirrored] if self._mirrors else [seen]
-        summed = [summed_activities(model.first, side) for side in sides]
         steps_um = np.rint(stream.motion * UM_PER_M).astype(np.int64).sum(axis=1)
-        travelled_um = [0, *np.cumsum(steps_um).tolist()]
-        self._prefixes = [
-            Prefix(tuple(sums), um) for *sums, um in zip(*summed, travelled_um, strict=True)
-        ]  # fmt: skip
-        moments = np.array([limb_moments(posture) for posture in stream.postures])
+        travelled_um = np.concatenate([[0], np.cumsum(steps_um)])
+        self._sums = [PrefixSums(list(summed_activities(model.first, side)), travelled_um) for side in sides]
+        moments = limb_moments(stream.postures)
         self._moments = np.concatenate([np.zeros_like(moments[:1]), np.cumsum(moments, axis=0)])
 
     def vector(self, first: int, last: int) -> NDArray[np.float32]:
         """Return the pyramid vector of the frames from `first` to `last`, both included, (inputs,)."""
         limbs = self._moments[last + 1] - self._moments[first]
         side = int(self._mirrors and LimbSpreads.of(limbs).left_handed)
-        return self._pyramid.vector(PrefixSums(self._prefixes[first : last + 2], side))
+        return self._pyramid.vector(self._sums[side].between(first, last + 1))

@@ -1,6 +1,8 @@
 """The search for actions in one person's stream, by the default recogniser."""
 
+from bisect import bisect_left
 from collections.abc import Callable, Sequence
+from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +18,18 @@ LEAST_PROBABILITY = 0.5
 """Probability from which an action is said to be going on: that it is must be likelier than that it is not."""
 
 
-Pool = Callable[[Sequence[Frame]], NDArray[np.float32]]
-"""Returns the pyramid vector (inputs,) of valid frames, each with the activity that the model's encoder gave."""
+Pool = Callable[[Sequence[Frame], Sequence[int]], Sequence[NDArray[np.float32]]]
+"""Returns the pyramid vectors (inputs,) of windows of valid frames, each with the activity that the model's encoder
+gave: the windows begin at the frames of these indices and end with the last one."""
 
 
 FEWEST_FRAMES = 4
 """Frames that a window needs: with fewer the pyramid's finest cells hold less than one each."""
 COVERED_SHARE = 0.8
 """Share of a duration over which there must be frames: after a gap longer windows come back one after the other."""
+
+
+_stamp_ns = attrgetter("stamp_ns")
 
 
 class RecentFrames(StreamBuffer[Frame]):
@@ -46,17 +52,19 @@ class RecentFrames(StreamBuffer[Frame]):
         self.append(frame)
         return follows
 
-    def windows(self) -> list[list[Frame]]:
-        """List the windows that end with the newest frame, the shortest first."""
-        frames = list(self)
-        newest_ns, first, found = frames[-1].stamp_ns, len(frames) - 1, []
+    def windows(self) -> tuple[list[Frame], list[int]]:
+        """Return the frames of the longest window that ends with the newest, and where in it each window begins.
+
+        The shortest window comes first.
+        """
+        frames = self.between(self.newest_ns - self._durations_ns[-1], self.newest_ns)
+        newest_ns, firsts = self.newest_ns, []
         for duration_ns in self._durations_ns:
-            while first > 0 and frames[first - 1].stamp_ns >= newest_ns - duration_ns:
-                first -= 1
+            first = bisect_left(frames, newest_ns - duration_ns, key=_stamp_ns)
             long_enough = newest_ns - frames[first].stamp_ns >= COVERED_SHARE * duration_ns
             if len(frames) - first >= FEWEST_FRAMES and long_enough:
-                found.append(frames[first:])
-        return found
+                firsts.append(first)
+        return frames, firsts
 
 
 class PoolingOnce:
@@ -67,14 +75,16 @@ class PoolingOnce:
         self._newest: Frame | None = None
         self._vectors: dict[int, NDArray[np.float32]] = {}
 
-    def __call__(self, frames: Sequence[Frame]) -> NDArray[np.float32]:
-        """Return the pyramid vector of a window, (inputs,)."""
+    def __call__(self, frames: Sequence[Frame], firsts: Sequence[int]) -> list[NDArray[np.float32]]:
+        """Return the pyramid vectors (inputs,) of windows that end with the last of these frames."""
         if self._newest is not frames[-1]:
             self._newest, self._vectors = frames[-1], {}
-        start_ns = frames[0].stamp_ns
-        if start_ns not in self._vectors:
-            self._vectors[start_ns] = self._pool(frames)
-        return self._vectors[start_ns]
+        starts_ns = [frames[first].stamp_ns for first in firsts]
+        new = {
+            start_ns: first for start_ns, first in zip(starts_ns, firsts, strict=True) if start_ns not in self._vectors
+        }
+        self._vectors |= zip(new, self._pool(frames, list(new.values())), strict=True)
+        return [self._vectors[start_ns] for start_ns in starts_ns]
 
 
 class PyramidSpotter(Spotter):
@@ -115,13 +125,13 @@ class PyramidSpotter(Spotter):
         return self._decision(frame.stamp_ns)
 
     def _decision(self, now_ns: int) -> Spotted:
-        windows = self._recent.windows()
-        if not windows:
+        frames, firsts = self._recent.windows()
+        if not firsts:
             self._ongoing = None
             return NOTHING
-        starts_ns = np.array([window[0].stamp_ns for window in windows])
-        completeness = np.stack([self._learned.heads.completeness(self._pool(window)) for window in windows])
-        ends_ns = np.full(len(windows), now_ns)
+        starts_ns = np.array([frames[first].stamp_ns for first in firsts])
+        completeness = np.stack([self._learned.heads.completeness(vector) for vector in self._pool(frames, firsts)])
+        ends_ns = np.full(len(firsts), now_ns)
         candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
         decided = self._decoder.step(now_ns, candidates)
         self._ongoing = self._likeliest(starts_ns.tolist(), now_ns, completeness)

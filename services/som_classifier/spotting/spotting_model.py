@@ -58,8 +58,13 @@ class CompletenessHeads:
 
     def completeness(self, vector: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return each head's answer to a pyramid vector (inputs,): about 0 to 1, shape (actions,)."""
-        completeness: NDArray[np.float32] = row_matmul(vector, self.axes) + self.offsets
+        completeness: NDArray[np.float32] = row_matmul(vector, self._axes_in_turn) + self.offsets
         return completeness
+
+    @cached_property
+    def _axes_in_turn(self) -> NDArray[np.float32]:
+        """The axes, one after the other in memory: products with one vector are several times as fast."""
+        return np.asfortranarray(self.axes)
 
 
 class PyramidSpottingMetadata(SpottingMetadata):

@@ -38,8 +38,8 @@ class Together:
         self._shape = (-1, len(maps), len(maps[0].weights))
         self._dtype = maps[0].dtype
         lookups = [som.lookup for som in maps]
-        self._centre = np.concatenate([lookup.centre for lookup in lookups])
-        self._half_norms2 = np.concatenate([lookup.half_norms2 for lookup in lookups])
+        self.centre = np.concatenate([lookup.centre for lookup in lookups])
+        self.half_norms2 = np.concatenate([lookup.half_norms2 for lookup in lookups])
         self._slopes = _blocks([lookup.slopes for lookup in lookups])
 
     def excess2s(self, rows: Array) -> Array:
@@ -49,13 +49,19 @@ class Together:
             rows: (n, sum of the maps' dims), the inputs of all maps one after the other. None may be missing (NaN):
                 it would spread to all maps.
         """
-        centred = (rows - self._centre).astype(self._dtype, copy=False)
-        scores = blas.few_rows_matmul(centred, self._slopes)
-        scores += self._half_norms2
+        scores = self.products((rows - self.centre).astype(self._dtype, copy=False))
+        scores += self.half_norms2
         excess2s: Array = scores.reshape(self._shape)
         excess2s -= excess2s.min(axis=2, keepdims=True)
         excess2s *= 2
         return excess2s
+
+    def products(self, centred: Array) -> Array:
+        """Return the products of all maps' inputs less `centre`, (n, sum of dims), with the weights, (n, maps * units).
+
+        With `half_norms2` they are the scores of `Lookup`.
+        """
+        return blas.few_rows_matmul(centred, self._slopes)
 
 
 def _blocks(parts: Sequence[Array]) -> Array:

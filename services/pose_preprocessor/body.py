@@ -1,0 +1,58 @@
+"""A body in its own frame: as it was measured, and with bones of standard length."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from actum import geometry, standard_body
+from actum.arrays import Array
+from actum.core import steps
+from actum.skeletons import INDEX
+
+_PARENTS = np.array([parent for parent, _, _ in standard_body.BONES], np.int32)
+_CHILDREN = np.array([child for _, child, _ in standard_body.BONES], np.int32)
+_LENGTHS_M = np.array([length_m for _, _, length_m in standard_body.BONES])
+_HIPS_TORSO = np.array([INDEX[name] for name in ("right_hip", "left_hip", "torso")], np.int32)
+
+
+class Body(NamedTuple):
+    """Joints (15, 3) in metres.
+
+    Attributes:
+        scaled: with standard bones, camera frame.
+        ego_from_camera: (4, 4), of the measured joints.
+        metric_ego: the measured joints, egocentric.
+        scaled_ego: those with standard bones, in the egocentric frame of their own.
+    """
+
+    scaled: Array
+    ego_from_camera: Array
+    metric_ego: Array
+    scaled_ego: Array
+
+
+def body_of(joints: Array) -> Body:
+    """Return the body of joints (15, 3; m, camera frame), NaN where unknown.
+
+    Raises:
+        DegenerateError: joints coincide, so that the frame is not defined.
+    """
+    metric_and_scaled = np.stack([joints, standard_body.scaled(joints)])
+    ego_from_camera = geometry.ego_from_camera(metric_and_scaled)
+    metric_ego, scaled_ego = geometry.apply(ego_from_camera, metric_and_scaled)
+    return Body(metric_and_scaled[1], ego_from_camera[0], metric_ego, scaled_ego)
+
+
+def body_of_known(joints: Array, reach_limit_m: float, bone_limit_m: float) -> Body | None:
+    """Do the same for joints that are all known by a compiled step; None without one, or where they cannot be used."""
+    if steps is None:
+        return None
+    numbers = np.empty(45 + 16 + 45 + 45)
+    usable = steps.body(
+        joints, _PARENTS, _CHILDREN, _LENGTHS_M, _HIPS_TORSO, reach_limit_m, bone_limit_m, geometry.SMALLEST_M, numbers
+    )
+    if not usable:
+        return None
+    scaled, ego_from_camera, metric_ego, scaled_ego = numbers[:45], numbers[45:61], numbers[61:106], numbers[106:]
+    of_joints = scaled.reshape(15, 3), metric_ego.reshape(15, 3), scaled_ego.reshape(15, 3)
+    return Body(of_joints[0], ego_from_camera.reshape(4, 4), *of_joints[1:])

@@ -1,0 +1,144 @@
+"""The compiled steps do what the NumPy code beside them does: installations with and without a compiler agree."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeVar
+from unittest.mock import patch
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from actum.core import steps
+from actum.geometry import DegenerateError
+from actum.messages import Posture
+from actum.node import SECOND_NS
+from people import FRAME_NS, STANDING, skeleton
+from pose_preprocessor.body import body_of, body_of_known
+from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
+from som_classifier.frames import Frame, frame_of
+from som_classifier.kinematics import KinematicsFilter
+from som_classifier.pyramid import PrefixSums, Pyramid
+from unmarked import spotting_model
+
+pytestmark = pytest.mark.skipif(steps is None, reason="this installation found no C compiler")
+R = TypeVar("R")
+CALLERS = (
+    "pose_preprocessor.body",
+    "pose_preprocessor.heading",
+    "pose_preprocessor.part_motion",
+    "som_classifier.frame_activity",
+    "som_classifier.kinematics",
+    "som_classifier.pyramid",
+)
+ROUNDING_M = 1e-14
+"""By how much positions may differ: some units in the last place of joints that are metres from the camera."""
+
+
+@contextmanager
+def numpy_alone() -> Iterator[None]:
+    patches = [patch(f"{caller}.steps", None) for caller in CALLERS]
+    for each in patches:
+        each.start()
+    try:
+        yield
+    finally:
+        for each in patches:
+            each.stop()
+
+
+def both(work: Callable[[], R]) -> tuple[R, R]:
+    """What the work gives by compiled steps, and by NumPy alone."""
+    compiled = work()
+    with numpy_alone():
+        return compiled, work()
+
+
+def moving(seed: int, frames: int = 40) -> list[Posture]:
+    """Postures of a person all of whose joints move smoothly, at uneven intervals."""
+    rng, node = np.random.default_rng(seed), PosePreprocessor(PoseSettings.defaults())
+    far_m, phases = rng.uniform(0.0, 0.1, (15, 3)), rng.uniform(0.0, 6.0, (15, 3))
+    stamps_ns = np.cumsum(rng.integers(FRAME_NS // 2, 2 * FRAME_NS, frames))
+    joints_m = [STANDING + far_m * np.sin(3e-9 * stamp_ns + phases) for stamp_ns in stamps_ns]
+    skeletons = [skeleton(int(ns), each, seq=n) for n, (ns, each) in enumerate(zip(stamps_ns, joints_m, strict=True))]
+    return [posture for each in skeletons for posture in node.handle(each) if isinstance(posture, Posture)]
+
+
+def encoded(postures: list[Posture]) -> list[Frame]:
+    filter_, encoder, frames = KinematicsFilter(), spotting_model().encoder(), []
+    for posture in postures:
+        frame = frame_of(posture, 0, filter_)
+        frame.activity = encoder.encode(frame)
+        frames.append(frame)
+    return frames
+
+
+@settings(deadline=None, max_examples=10)
+@given(st.integers(0, 2**32 - 1))
+def test_postures_agree(seed: int) -> None:
+    for compiled, plain in zip(*both(lambda: moving(seed)), strict=True):
+        assert compiled.valid and plain.valid
+        for name in ("joints_m", "joints", "upright", "ego_from_camera", "motion"):
+            np.testing.assert_allclose(getattr(compiled, name), getattr(plain, name), rtol=0, atol=ROUNDING_M)
+
+
+@settings(deadline=None, max_examples=10)
+@given(st.integers(0, 2**32 - 1))
+def test_a_frame_adds_the_same_to_all_sums(seed: int) -> None:
+    """But for steps of the quantisation where an activity lies between two."""
+    postures = moving(seed)
+    for compiled, plain in zip(*both(lambda: encoded(postures)), strict=True):
+        assert compiled.kinematics is not None and plain.kinematics is not None
+        of_both = [(each.kinematics.posture, each.kinematics.velocity) for each in (compiled, plain) if each.kinematics]
+        np.testing.assert_allclose(*of_both, rtol=0, atol=ROUNDING_M)
+        added = [
+            np.stack(frame.activity.after.sums) - np.stack(frame.activity.before.sums) for frame in (compiled, plain)
+        ]
+        assert np.abs(added[0].astype(np.int64) - added[1].astype(np.int64)).max() <= 1
+        totals = [frame.activity.totals_after - frame.activity.totals_before for frame in (compiled, plain)]
+        assert np.abs(totals[0] - totals[1]).max() <= 1
+        assert compiled.activity.winners == plain.activity.winners
+
+
+@given(st.integers(1, 80), st.booleans(), st.integers(0, 2**32 - 1), st.sampled_from([(1, 2, 4), (1,), (1, 2, 3, 5)]))
+def test_pooled_vectors_are_the_same_to_the_bit(frames: int, still: bool, seed: int, levels: tuple[int, ...]) -> None:
+    rng, pyramid = np.random.default_rng(seed), Pyramid(levels, 0.25)
+    added = rng.integers(0, 2**15, (frames + 1, 37)).astype(np.uint32)
+    sums = np.cumsum(added, axis=0, dtype=np.uint32) + np.uint32(rng.integers(2**32))
+    moved_um = np.zeros(frames + 1, np.int64) if still else rng.integers(0, 50_000, frames + 1)
+    segment = PrefixSums(list(sums), np.cumsum(moved_um))
+    np.testing.assert_array_equal(*both(lambda: pyramid.vector(segment)))
+
+
+def test_windows_are_read_by_the_same_arm() -> None:
+    frames = encoded(moving(3))
+    firsts = list(range(0, 30, 3))
+    compiled, plain = both(lambda: spotting_model().pooled(frames, firsts))
+    np.testing.assert_array_equal(compiled, plain)
+
+
+@pytest.mark.parametrize("spoilt", ["hips", "bone", "far"])
+def test_what_cannot_be_used_is_refused_alike(spoilt: str) -> None:
+    joints = STANDING.copy()
+    if spoilt == "hips":
+        joints[9] = joints[12]
+    joints[5] += {"hips": 0.0, "bone": 3.0, "far": 1e4}[spoilt]
+
+    def refused() -> str | None:
+        node = PosePreprocessor(PoseSettings.defaults())
+        (posture,) = node.handle(skeleton(SECOND_NS, joints))
+        assert not posture.valid
+        return posture.reason
+
+    compiled, plain = both(refused)
+    assert compiled == plain is not None
+
+
+def test_joints_that_coincide_are_refused_by_both() -> None:
+    joints = STANDING.copy()
+    joints[1] = joints[2]
+    assert body_of_known(joints, 10.0, 2.0) is None
+    with pytest.raises(DegenerateError):
+        body_of(joints)
