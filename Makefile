@@ -11,7 +11,7 @@ PYTHONS ?= python3.11 python3.12 python3.13
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench check-speed bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -97,6 +97,10 @@ check: docs  ## format, lint, types, layers, pages
 
 bench: $(STAMP)  ## latency beside a bare Zenoh chain and behind a secured router, and throughput
 	$(BIN)/python -m benchmarks.latency
+
+COMMIT ?= HEAD
+check-speed: $(STAMP)  ## this tree beside COMMIT=HEAD in turns, and what became slower by a tenth; some minutes
+	$(BIN)/python -m benchmarks.speed $(COMMIT)
 
 bench-camera: $(STAMP)  ## real people in video clips, beside the same peers, about five minutes
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }

@@ -21,7 +21,7 @@ class Stage:
         message = decode(frame.key, frame.payload, frame.encoding)
         if not isinstance(message, self._inputs):
             return []
-        return [encode(self._numbering.numbered(output)) for output in self._node.handle(message)]
+        return [encode(output, seq=self._numbering.number(output)) for output in self._node.handle(message)]
 
 
 def frames_per_second(messages: Sequence[Message], preprocessor: Node, classifier: Node) -> float:

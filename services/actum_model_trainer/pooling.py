@@ -12,7 +12,7 @@ from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.first_layer import FirstMaps
 from som_classifier.frame_activity import UM_PER_M
-from som_classifier.pyramid import PrefixSums, Pyramid, quantised
+from som_classifier.pyramid import PrefixSums, Pyramid, running_sums
 
 
 class PooledVectors(NamedTuple):
@@ -111,7 +111,4 @@ class _VariantSums:
 
 def summed_activities(first: FirstMaps, variant: Variant) -> NDArray[np.uint32]:
     """Return the sums of the activity before each of a variant's n frames, and after the last, (n + 1, channels)."""
-    activities = quantised(first.activities(variant.postures, variant.velocities))
-    sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
-    np.cumsum(activities, axis=0, out=sums[1:])
-    return sums
+    return running_sums(first.activities(variant.postures, variant.velocities))

@@ -59,7 +59,7 @@ class SegmentSample:
     @cached_property
     def acting_hands(self) -> list[Hand | None]:
         """For each frame, the side of the arm that has acted up to it; None for both arms or another limb."""
-        summed = np.cumsum([limb_moments(posture) for posture in self.postures], axis=0)
+        summed = np.cumsum(limb_moments(self.postures), axis=0)
         return [LimbSpreads.of(so_far).acting_hand for so_far in summed]
 
 

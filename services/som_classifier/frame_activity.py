@@ -112,10 +112,10 @@ def segment_sums(frames: Sequence[FrameActivity], in_mirror: bool) -> PrefixSums
 
 def left_handed(frames: Sequence[FrameActivity]) -> bool:
     """Tell whether the left arm acts over a segment, of which only the first and the last frame matter."""
-    before, after = frames[0].totals_before[_LIMBS], frames[-1].totals_after[_LIMBS]
-    if steps is not None:
-        return LimbSpreads(steps.spreads(before, after)).left_handed
-    return LimbSpreads.of((after - before).reshape(LIMBS, MOMENTS)).left_handed
+    before, after = (
+        totals[_LIMBS].reshape(LIMBS, MOMENTS) for totals in (frames[0].totals_before, frames[-1].totals_after)
+    )
+    return LimbSpreads.between(before, after).left_handed
 
 
 def most_moved_part(frames: Sequence[FrameActivity]) -> str:

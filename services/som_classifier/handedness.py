@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.core import steps
 from actum.messages import Hand
 from actum.skeletons import INDEX, JOINTS
 
@@ -85,6 +86,11 @@ class LimbSpreads:
     def of(cls, summed: Integers) -> "LimbSpreads":
         """Compute the spreads from the moments (4, 8) summed over the frames."""
         return cls([_spread(limb) for limb in summed.tolist()])
+
+    @classmethod
+    def between(cls, before: Integers, after: Integers) -> "LimbSpreads":
+        """Compute the spreads of some frames from the moments (4, 8) summed over all before them, and with them."""
+        return cls.of(after - before) if steps is None else cls(steps.spreads(before, after))
 
     @property
     def acting_hand(self) -> Hand | None:

@@ -28,6 +28,17 @@ def quantised(activities: Floats) -> Sums:
     return whole
 
 
+def running_sums(activities: NDArray[np.float32]) -> Sums:
+    """Return the sums of activities (n, units), quantised, before each row and after the last, (n + 1, units)."""
+    sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
+    if steps is not None:
+        steps.running_sums(activities, SCALE, activities.shape[1], sums)
+        return sums
+    for row, before, after in zip(quantised(activities), sums, sums[1:], strict=False):
+        np.add(before, row, out=after)  # row by row: np.cumsum takes several times as long
+    return sums
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Prefix:
     """Sums over all frames up to an instant between two frames.

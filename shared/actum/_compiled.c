@@ -493,14 +493,143 @@ static PyObject *spreads(PyObject *module, PyObject *args)
     return Py_BuildValue("[dddd]", of[0], of[1], of[2], of[3]);
 }
 
+VECTORISED static void add_row(const float *activity, float scale, const uint32_t *before, uint32_t *after, Py_ssize_t n)
+{
+    for (Py_ssize_t u = 0; u < n; u++)
+        after[u] = before[u] + (uint32_t)(int32_t)rintf(activity[u] * scale);
+}
+
+PyDoc_STRVAR(running_sums_doc,
+    "running_sums(activities, scale, sums)\n--\n\n"
+    "Write the sums of quantised activities (n, units) before each row and after the last, (n + 1, units).");
+static PyObject *running_sums(PyObject *module, PyObject *args)
+{
+    Py_buffer b[2];
+    float scale;
+    Py_ssize_t units;
+    if (!PyArg_ParseTuple(args, "y*fnw*", &b[0], &scale, &units, &b[1]))
+        return NULL;
+    const float *activities = b[0].buf;
+    uint32_t *sums = b[1].buf;
+    memset(sums, 0, units * sizeof *sums);
+    for (Py_ssize_t row = 0; row < b[0].len / (Py_ssize_t)sizeof(float) / units; row++)
+        add_row(activities + row * units, scale, sums + row * units, sums + (row + 1) * units, units);
+    return released(b, 2);
+}
+
+typedef struct {
+    int64_t lag_ns, memory_ns, decided_ns;
+    double overlap;
+    const int64_t *starts_ns, *ends_ns;
+    const double *gains;
+    Py_ssize_t *pending, waiting, *step, *before; /* step, before: the best set's last member up to each, and before it */
+    double *best;
+} Decoding;
+
+/* Find the best set of those that wait, as best_set does; write its members in order to `chosen`. */
+static Py_ssize_t best_set(Decoding *d, Py_ssize_t *chosen)
+{
+    Py_ssize_t count = 0;
+    d->best[0] = 0.0;
+    d->step[0] = 0;
+    for (Py_ssize_t n = 1; n <= d->waiting; n++) {
+        Py_ssize_t candidate = d->pending[n - 1], low = 0, high = n;
+        while (low < high) { /* the first of those before it that ends at its start or later; the 0th ended at -1 */
+            Py_ssize_t middle = (low + high) / 2;
+            int64_t end_ns = middle ? d->ends_ns[d->pending[middle - 1]] : -1;
+            if (end_ns < d->starts_ns[candidate])
+                low = middle + 1;
+            else
+                high = middle;
+        }
+        d->before[n] = low > 0 ? low - 1 : 0;
+        double gain = d->best[d->before[n]] + d->gains[candidate];
+        d->step[n] = gain > d->best[n - 1];
+        d->best[n] = d->step[n] ? gain : d->best[n - 1];
+    }
+    for (Py_ssize_t n = d->waiting; n > 0; n = d->step[n] ? d->before[n] : n - 1)
+        count += d->step[n];
+    for (Py_ssize_t n = d->waiting, k = count; n > 0; n = d->step[n] ? d->before[n] : n - 1)
+        if (d->step[n])
+            chosen[--k] = d->pending[n - 1];
+    return count;
+}
+
+/* Take the candidates that end now, up to `after`, and append to `found` what is decided; -1 where an error is set. */
+static int decode_step(Decoding *d, int64_t now_ns, Py_ssize_t *next, Py_ssize_t after, Py_ssize_t *chosen, PyObject *found)
+{
+    Py_ssize_t kept = 0, count;
+    int64_t decided_ns = d->decided_ns;
+    while (*next < after && d->ends_ns[*next] == now_ns)
+        d->pending[d->waiting++] = (*next)++;
+    for (Py_ssize_t n = 0; n < d->waiting; n++) {
+        int64_t start_ns = d->starts_ns[d->pending[n]], end_ns = d->ends_ns[d->pending[n]];
+        if (end_ns >= now_ns - d->memory_ns && end_ns > decided_ns
+            && (double)(decided_ns - start_ns) <= d->overlap * (double)(end_ns - start_ns))
+            d->pending[kept++] = d->pending[n];
+    }
+    d->waiting = kept;
+    count = best_set(d, chosen);
+    for (Py_ssize_t k = 0; k < count && d->ends_ns[chosen[k]] <= now_ns - d->lag_ns; k++) {
+        int64_t start_ns = d->starts_ns[chosen[k]];
+        PyObject *one = Py_BuildValue("nLL", chosen[k], (long long)(start_ns > decided_ns ? start_ns : decided_ns + 1),
+                                      (long long)now_ns);
+        int failed = one == NULL || PyList_Append(found, one) < 0;
+        Py_XDECREF(one);
+        if (failed)
+            return -1;
+        d->decided_ns = d->ends_ns[chosen[k]];
+    }
+    return 0;
+}
+
+PyDoc_STRVAR(decoded_doc,
+    "decoded(starts_ns, ends_ns, gains, decisions_ns, restarts, lag_ns, memory_ns, overlap) -> list\n--\n\n"
+    "Decide on candidates, in the order of their ends, as a Decoder does at each of the decisions' instants, of which\n"
+    "some restart it: the number of each segment's candidate, its start and the instant of the decision (ns).");
+static PyObject *decoded(PyObject *module, PyObject *args)
+{
+    Py_buffer b[5];
+    long long lag_ns, memory_ns;
+    double overlap;
+    if (!PyArg_ParseTuple(args, "y*y*y*y*y*LLd", &b[0], &b[1], &b[2], &b[3], &b[4], &lag_ns, &memory_ns, &overlap))
+        return NULL;
+    Py_ssize_t count = b[0].len / 8, decisions = b[3].len / 8, next = 0;
+    const int64_t *decisions_ns = b[3].buf;
+    const uint8_t *restarts = b[4].buf;
+    Py_ssize_t *room = PyMem_Malloc((4 * count + 4) * sizeof *room);
+    double *best = PyMem_Malloc((count + 1) * sizeof *best);
+    PyObject *found = PyList_New(0);
+    if (room == NULL || best == NULL)
+        PyErr_NoMemory();
+    Decoding d = {lag_ns, memory_ns, -1, overlap, b[0].buf, b[1].buf, b[2].buf, room, 0, room + count + 1,
+                  room + 2 * count + 2, best};
+    for (Py_ssize_t k = 0; k < decisions && !PyErr_Occurred(); k++) {
+        if (restarts[k])
+            d.waiting = 0;
+        if ((d.waiting || (next < count && d.ends_ns[next] == decisions_ns[k]))
+            && decode_step(&d, decisions_ns[k], &next, count, room + 3 * count + 3, found) < 0)
+            break;
+    }
+    PyMem_Free(room);
+    PyMem_Free(best);
+    for (int n = 0; n < 5; n++)
+        PyBuffer_Release(&b[n]);
+    if (PyErr_Occurred())
+        Py_CLEAR(found);
+    return found;
+}
+
 static PyMethodDef methods[] = {
     {"accumulated", accumulated, METH_VARARGS, accumulated_doc},
     {"body", body, METH_VARARGS, body_doc},
+    {"decoded", decoded, METH_VARARGS, decoded_doc},
     {"exponents", exponents, METH_VARARGS, exponents_doc},
     {"left", left, METH_VARARGS, left_doc},
     {"map_inputs", map_inputs, METH_VARARGS, map_inputs_doc},
     {"moved", moved, METH_VARARGS, moved_doc},
     {"pooled", pooled, METH_VARARGS, pooled_doc},
+    {"running_sums", running_sums, METH_VARARGS, running_sums_doc},
     {"smoothed", smoothed, METH_VARARGS, smoothed_doc},
     {"spreads", spreads, METH_VARARGS, spreads_doc},
     {"totals", totals, METH_VARARGS, totals_doc},

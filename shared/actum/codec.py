@@ -51,10 +51,14 @@ def schema_name(message: Message | type[Message]) -> str:
     return f"{message.SCHEMA}/{message.VERSION}"
 
 
-def encode(message: Message, origin: str = "") -> Frame:
-    """Pack a message; the attachment repeats `[version, seq, stamp_ns]` and adds who puts it, if that is given."""
-    payload = msgpack.packb(message.model_dump(), use_bin_type=True)
-    attachment = msgpack.packb([message.VERSION, message.seq, message.stamp_ns, *filter(None, [origin])])
+def encode(message: Message, origin: str = "", seq: int | None = None) -> Frame:
+    """Pack a message, under a number where one is given.
+
+    The attachment repeats `[version, seq, stamp_ns]` and adds who puts it, if that is given.
+    """
+    number = message.seq if seq is None else seq
+    payload = msgpack.packb(message.model_dump() | {"seq": number}, use_bin_type=True)
+    attachment = msgpack.packb([message.VERSION, number, message.stamp_ns, *filter(None, [origin])])
     return Frame(keys.key_of(message), payload, f"application/msgpack;{schema_name(message)}", attachment)
 
 

@@ -112,13 +112,18 @@ class Numbering:
 
     def numbered(self, message: Message) -> Message:
         """Return the message with `seq` set. A message that has a number keeps it, and the next one continues there."""
+        seq = self.number(message)
+        return message if message.seq is not None else message.model_copy(update={"seq": seq})
+
+    def number(self, message: Message) -> int:
+        """Return the number that a message has or gets."""
         key = keys.key_of(message)
         expected = self._next.pop(key, 0)
         seq = expected if message.seq is None else message.seq
         self._next[key] = seq + 1
         if len(self._next) > MOST_KEYS:
             del self._next[next(iter(self._next))]
-        return message if message.seq is not None else message.model_copy(update={"seq": seq})
+        return seq
 
 
 def replay(node: Node, messages: Iterable[tuple[int, Message]], settle_ns: int = SETTLE_NS) -> Iterator[Message]:

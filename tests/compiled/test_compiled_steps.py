@@ -20,7 +20,8 @@ from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from som_classifier.frames import Frame, frame_of
 from som_classifier.kinematics import KinematicsFilter
-from som_classifier.pyramid import PrefixSums, Pyramid
+from som_classifier.pyramid import PrefixSums, Pyramid, running_sums
+from som_classifier.spotting.decoding import Decoder, Spans, decoded
 from unmarked import spotting_model
 
 pytestmark = pytest.mark.skipif(steps is None, reason="this installation found no C compiler")
@@ -30,8 +31,10 @@ CALLERS = (
     "pose_preprocessor.heading",
     "pose_preprocessor.part_motion",
     "som_classifier.frame_activity",
+    "som_classifier.handedness",
     "som_classifier.kinematics",
     "som_classifier.pyramid",
+    "som_classifier.spotting.decoding",
 )
 ROUNDING_M = 1e-14
 """By how much positions may differ: some units in the last place of joints that are metres from the camera."""
@@ -117,6 +120,30 @@ def test_windows_are_read_by_the_same_arm() -> None:
     firsts = list(range(0, 30, 3))
     compiled, plain = both(lambda: spotting_model().pooled(frames, firsts))
     np.testing.assert_array_equal(compiled, plain)
+
+
+@given(
+    st.lists(st.tuples(st.integers(1, 40), st.integers(0, 3), st.integers(1, 30)), max_size=60),
+    st.sets(st.integers(0, 59)),
+    st.sampled_from([0.0, 0.15, 0.9]),
+)
+def test_the_same_candidates_are_decided_on(
+    drawn: list[tuple[int, int, int]], restarts: set[int], overlap: float
+) -> None:
+    """Ends rise by 0 to 3, so that several end at once; equal gains leave the choice to the order."""
+    lengths, steps_ns, gains = (np.array([each[n] for each in drawn], np.int64) for n in range(3))
+    ends_ns = 100 + np.cumsum(steps_ns)
+    spans = Spans(ends_ns - lengths, ends_ns, gains / 2)
+    decisions_ns = np.union1d(ends_ns, 100 + np.arange(0, 200, 7))
+    begins_anew = np.isin(np.arange(len(decisions_ns)), list(restarts))
+    compiled, plain = both(lambda: decoded(Decoder(5, 60, overlap), spans, decisions_ns, begins_anew))
+    assert compiled == plain
+
+
+@given(st.integers(0, 30), st.integers(0, 2**32 - 1))
+def test_running_sums_are_the_same_to_the_bit(frames: int, seed: int) -> None:
+    activities = np.random.default_rng(seed).random((frames, 50)).astype(np.float32)
+    np.testing.assert_array_equal(*both(lambda: running_sums(activities)))
 
 
 @pytest.mark.parametrize("spoilt", ["hips", "bone", "far"])

@@ -33,6 +33,6 @@ class EncodedStream:
 
     def vector(self, first: int, last: int) -> NDArray[np.float32]:
         """Return the pyramid vector of the frames from `first` to `last`, both included, (inputs,)."""
-        limbs = self._moments[last + 1] - self._moments[first]
-        side = int(self._mirrors and LimbSpreads.of(limbs).left_handed)
+        limbs = LimbSpreads.between(self._moments[first], self._moments[last + 1])
+        side = int(self._mirrors and limbs.left_handed)
         return self._pyramid.vector(self._sums[side].between(first, last + 1))

@@ -63,6 +63,6 @@ def _answers(
     for fold in np.unique(of_fold):
         in_fold = np.flatnonzero(of_fold == fold)
         for chunk in np.array_split(in_fold, -(-len(in_fold) // CHUNK)):
-            vectors = np.stack([encoded.vector(first, last) for first, last in windows[chunk].tolist()])
+            vectors = np.array([encoded.vector(first, last) for first, last in windows[chunk].tolist()])
             answers[chunk] = vectors @ heads.without[fold].axes + heads.without[fold].offsets
     return answers

@@ -2,16 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from itertools import groupby
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from actum.arrays import Mask
 from actum_model_trainer.continuous.detections import Detection, Found
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
+from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.scanning import ScannedStream
 from som_classifier.kinematics import GAP_NS
-from som_classifier.spotting.spotting_model import SpottingModel
+from som_classifier.spotting.decoding import Decoder, decoded
+from som_classifier.spotting.spotting_model import JudgedWindows, SpottingModel
 
 BEARABLE_PER_MIN = 0.5
 """False alarms in a minute of background that cost nothing in the choice of the threshold."""
@@ -49,7 +52,8 @@ def chosen_threshold(
     scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequence[str], thresholds: Sequence[float]
 ) -> ThresholdChoice:
     """Search the streams with each threshold, and choose the best after smoothing over neighbouring ones."""
-    scores = [scores_of(found(scanned, learned, labels, threshold)) for threshold in thresholds]
+    judged = [Judged.of(each, learned) for each in scanned]
+    scores = [scores_of(found(judged, learned, labels, threshold)) for threshold in thresholds]
     worth = np.array([_worth(score) for score in scores])
     smoothed = np.convolve(np.pad(worth, 1, mode="edge"), np.full(3, 1 / 3), mode="valid")
     counted = scores[0].background_min >= SHORTEST_BACKGROUND_MIN
@@ -62,14 +66,54 @@ def chosen_threshold(
     )
 
 
-def found(scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequence[str], threshold: float) -> Found:
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A stream, what each of its windows is most likely to be, and when a search decides.
+
+    Attributes:
+        stream: with its labelled segments.
+        windows: in the order of their ends.
+        decisions_ns: (k,), rising, the ends, and the stamps after gaps, at which a search begins anew.
+        restarts: (k,), which of them are the latter.
+    """
+
+    stream: LabelledStream
+    windows: JudgedWindows
+    decisions_ns: NDArray[np.int64]
+    restarts: Mask
+
+    @classmethod
+    def of(cls, scanned: ScannedStream, learned: SpottingModel) -> "Judged":
+        """Judge the windows of a stream."""
+        stamps_ns = scanned.stream.stamps_ns
+        starts_ns, ends_ns = stamps_ns[scanned.windows[:, 0]], stamps_ns[scanned.windows[:, 1]]
+        restarts_ns = stamps_ns[np.flatnonzero(np.diff(stamps_ns) > GAP_NS) + 1]
+        windows = learned.judged(starts_ns, ends_ns, scanned.completeness)
+        decisions_ns = np.union1d(ends_ns, restarts_ns)
+        return cls(scanned.stream, windows, decisions_ns, np.isin(decisions_ns, restarts_ns))
+
+    def decided(self, decoder: Decoder, threshold: float) -> list[tuple[int, int, int, int]]:
+        """Return start, end and decision (ns) and the action of each segment that a search finds."""
+        numbers, spans = self.windows.gainful(threshold)
+        return [
+            (
+                each.start_ns,
+                int(spans.ends_ns[each.candidate]),
+                each.decided_ns,
+                int(self.windows.actions[numbers[each.candidate]]),
+            )
+            for each in decoded(decoder, spans, self.decisions_ns, self.restarts)
+        ]
+
+
+def found(judged: Sequence[Judged], learned: SpottingModel, labels: Sequence[str], threshold: float) -> Found:
     """Return what a search with this threshold finds in the streams."""
     detections = [
         Detection(each.stream.file, each.stream.agent, start_ns, end_ns, decided_ns, labels[action], 1.0)
-        for each in scanned
-        for start_ns, end_ns, decided_ns, action in _decided(each, learned, threshold)
+        for each in judged
+        for start_ns, end_ns, decided_ns, action in each.decided(learned.decoder(), threshold)
     ]
-    return replace(sum((each.stream.marked for each in scanned), Found()), detections=detections)
+    return replace(sum((each.stream.marked for each in judged), Found()), detections=detections)
 
 
 def false_alarms(
@@ -78,7 +122,7 @@ def false_alarms(
     """Return for each stream what a search with this threshold finds where no action is done."""
     alarms = []
     for each in scanned:
-        detections = found([each], learned, labels, threshold).detections
+        detections = found([Judged.of(each, learned)], learned, labels, threshold).detections
         segments = each.stream.segments
         alarms.append(
             [
@@ -88,24 +132,6 @@ def false_alarms(
             ]
         )
     return alarms
-
-
-def _decided(each: ScannedStream, learned: SpottingModel, threshold: float) -> list[tuple[int, int, int, int]]:
-    """Return start, end and decision (ns) and the action of each segment found in a stream."""
-    decoder, stamps_ns = learned.decoder(), each.stream.stamps_ns
-    starts_ns, ends_ns = stamps_ns[each.windows[:, 0]], stamps_ns[each.windows[:, 1]]
-    candidates = learned.candidates(starts_ns, ends_ns, each.completeness, threshold)
-    by_end = {end_ns: list(of_end) for end_ns, of_end in groupby(candidates, key=lambda each: each.end_ns)}
-    gaps = np.flatnonzero(np.diff(stamps_ns) > GAP_NS) + 1
-    decisions_ns = np.union1d(ends_ns, stamps_ns[gaps])
-    restarts_ns = set(stamps_ns[gaps].tolist())
-    decided = []
-    for now_ns in decisions_ns.tolist():
-        if now_ns in restarts_ns:
-            decoder.forget()
-        found_now = decoder.step(now_ns, by_end.get(now_ns, ()))
-        decided += [(segment.start_ns, segment.end_ns, now_ns, segment.action) for segment in found_now]
-    return decided
 
 
 def _worth(score: ContinuousScores) -> float:

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from actum.arrays import Array, Floats
+from actum.arrays import Array, Floats, Indices
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.node import SECOND_NS
 from actum.som.blas import row_matmul
 from som_classifier.kinematics import GAP_NS
-from som_classifier.spotting.decoding import Candidate, Decoder
+from som_classifier.spotting.decoding import Candidate, Decoder, Spans
 from som_classifier.spotting.spotted import Finite, SpottingMetadata
 
 Stamps = NDArray[np.int64]
@@ -104,6 +104,36 @@ class PyramidSpottingMetadata(SpottingMetadata):
 
 
 @dataclass(frozen=True, eq=False)
+class JudgedWindows:
+    """The likeliest action of each of n windows.
+
+    A window gains (worth - threshold) * duration, where worth = completeness + weight * log-likelihood of its duration,
+    and the durations of each action are log-normally distributed.
+
+    Attributes:
+        starts_ns: (n,), the first stamps.
+        ends_ns: (n,), the last stamps.
+        actions: (n,), the likeliest action, by its number.
+        worth: (n,), as this action.
+        completeness: (n,), the head's answer for it.
+        durations: (n,), relative to the mean duration of an action.
+    """
+
+    starts_ns: Stamps
+    ends_ns: Stamps
+    actions: Indices
+    worth: Array
+    completeness: Floats
+    durations: Array
+
+    def gainful(self, threshold: float) -> tuple[Indices, Spans]:
+        """Return which windows gain something above a threshold, (m,), and these as candidates."""
+        gains = (self.worth - threshold) * self.durations
+        gainful = np.flatnonzero(gains > 0)
+        return gainful, Spans(self.starts_ns[gainful], self.ends_ns[gainful], gains[gainful])
+
+
+@dataclass(frozen=True, eq=False)
 class SpottingModel:
     """Heads and durations.
 
@@ -134,28 +164,20 @@ class SpottingModel:
             completeness: (n, actions), the heads' answers.
             threshold: completeness that must be exceeded.
         """
-        gains = self.gains((ends_ns - starts_ns) / SECOND_NS, completeness, threshold)
-        actions = gains.argmax(axis=1)
-        return [
-            Candidate(
-                int(starts_ns[n]), int(ends_ns[n]), int(action), float(completeness[n, action]), float(gains[n, action])
-            )
-            for n, action in enumerate(actions)
-            if gains[n, action] > 0
-        ]
+        judged = self.judged(starts_ns, ends_ns, completeness)
+        gainful, spans = judged.gainful(threshold)
+        columns = (spans.starts_ns, spans.ends_ns, judged.actions[gainful], judged.completeness[gainful], spans.gains)
+        return list(map(Candidate, *(column.tolist() for column in columns)))
 
-    def gains(self, durations_s: Array, completeness: Floats, threshold: float) -> Array:
-        """Return what windows (n,) are worth as each action, shape (n, actions).
-
-        gain = (completeness + weight * log-likelihood of the duration - threshold) * duration / mean duration, the
-        durations of each action being log-normally distributed.
-        """
-        means, sds = self._log_durations
+    def judged(self, starts_ns: Stamps, ends_ns: Stamps, completeness: Floats) -> "JudgedWindows":
+        """Find what windows (n,) are most likely to be, whatever the threshold; arguments as for `candidates`."""
+        durations_s = (ends_ns - starts_ns) / SECOND_NS
+        means, sds, mean_duration_s = self._log_durations
         z2 = np.square((np.log(np.maximum(durations_s, SHORTEST_S))[:, None] - means) / sds)
-        log_likelihoods = -0.5 * np.minimum(z2, LARGEST_Z2)
-        worth = completeness + self.metadata.duration_weight * log_likelihoods - threshold
-        gains: Array = worth * (durations_s / np.exp(means).mean())[:, None]
-        return gains
+        worth = completeness + self.metadata.duration_weight * (-0.5 * np.minimum(z2, LARGEST_Z2))
+        actions, rows = worth.argmax(axis=1), np.arange(len(worth))
+        best = worth[rows, actions], completeness[rows, actions]
+        return JudgedWindows(starts_ns, ends_ns, actions, *best, durations_s / mean_duration_s)
 
     def probability(self, completeness: float) -> float:
         """Return how probable it is that an action is going on for which a head answers this much."""
@@ -163,5 +185,7 @@ class SpottingModel:
         return float(1.0 / (1.0 + np.exp(-(slope * completeness + intercept))))
 
     @cached_property
-    def _log_durations(self) -> tuple[Array, Array]:
-        return np.array(self.metadata.log_duration_means), np.array(self.metadata.log_duration_sds)
+    def _log_durations(self) -> tuple[Array, Array, float]:
+        """Means and deviations of the logarithms of the actions' durations (s), and the mean duration (s)."""
+        means = np.array(self.metadata.log_duration_means)
+        return means, np.array(self.metadata.log_duration_sds), float(np.exp(means).mean())

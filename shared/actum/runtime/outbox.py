@@ -52,7 +52,7 @@ class Outbox:
     def put(self, message: Message) -> None:
         """Number and put one message."""
         with self._lock:
-            frame = encode(self._numbering.numbered(message), self._origin)
+            frame = encode(message, self._origin, self._numbering.number(message))
             manner = _manner(message)
             if manner == "cached" and self._keep is not None:
                 self._keep(frame)
