@@ -43,6 +43,7 @@ RESULTS = {
     "The paper": "benchmarks/paper/results",
     "The paper: what was tried": "benchmarks/paper/README",
     "Marker tracker": "benchmarks/tracker/results",
+    "Latency": "benchmarks/latency/results",
     "Maps": "benchmarks/som",
 }
 PROJECT = ["deploy/README", "CONTRIBUTING", "CHANGELOG", "SECURITY"]

@@ -31,7 +31,7 @@ def main(commit: str, rounds: int) -> bool:
         other = Path(name) / "tree"
         subprocess.run(["git", "worktree", "add", "--quiet", "--detach", other, commit], cwd=ROOT, check=True)
         try:
-            turns = [(measured(ROOT, Path(name)), measured(other, Path(name))) for _ in range(rounds)]
+            turns = [(measured(ROOT), measured(other)) for _ in range(rounds)]
         finally:
             subprocess.run(["git", "worktree", "remove", "--force", other], cwd=ROOT, check=True)
     here, there = ([turn[n] for turn in turns] for n in (0, 1))
@@ -42,7 +42,7 @@ def main(commit: str, rounds: int) -> bool:
     return not slower
 
 
-def measured(tree: Path, folder: Path) -> Rates:
+def measured(tree: Path) -> Rates:
     """Run the measurements of this tree with the code of another, on one core."""
     environment = {
         **os.environ,
@@ -50,9 +50,7 @@ def measured(tree: Path, folder: Path) -> Rates:
         "OPENBLAS_NUM_THREADS": "1",
     }
     measure = Path(__file__).with_name("measure.py")
-    done = subprocess.run(
-        [sys.executable, measure, folder], cwd=folder, env=environment, stdout=subprocess.PIPE, check=True
-    )
+    done = subprocess.run([sys.executable, measure], cwd=tree, env=environment, stdout=subprocess.PIPE, check=True)
     rates: Rates = json.loads(done.stdout)
     return rates
 

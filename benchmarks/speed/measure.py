@@ -1,12 +1,10 @@
 """Measures what a user waits for in the tree that PYTHONPATH names, and prints it as JSON, larger being faster.
 
-python -m benchmarks.speed.measure FOLDER
-
 The scene, the model and all else come from that tree: only what several versions have in common is called.
 """
 
 import json
-import sys
+import tempfile
 import time
 from collections.abc import Callable, Mapping
 from functools import partial
@@ -19,7 +17,7 @@ from actum.messages import Segment
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
 from actum_model_trainer.samples import Samples, samples_from
-from actum_model_trainer.training import train_to_spot
+from actum_model_trainer.training import train, train_to_spot
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from som_classifier.model import Model
@@ -27,26 +25,33 @@ from som_classifier.node import SomClassifier
 from som_classifier.presets import DEFAULT
 
 TIMES = 3
-"""How often each is measured: the fastest counts, as whatever else the machine does only slows it down."""
+"""How often rates of frames are measured: the fastest counts, as whatever else the machine does only slows it down."""
 
 
 def main() -> None:
     """Measure all."""
-    examples = Path(sys.argv[1]) / "examples.mcap"
-    write_examples(examples, repetitions=12, actor=0, seed=1)
-    samples = samples_from([Recording(examples)])
-    model = trained(samples)
+    with tempfile.TemporaryDirectory() as folder:
+        examples = Path(folder) / "examples.mcap"
+        write_examples(examples, repetitions=12, actor=0, seed=1)
+        samples = samples_from([Recording(examples)])
     rates: Mapping[str, Callable[[], float]] = {
-        "preprocessor and classifier, marked and searched, frames/s": partial(frames, model, marks=True),
-        "preprocessor and classifier, searched alone, frames/s": partial(frames, model, marks=False),
-        "trainings with the search, per minute": partial(trainings, samples),
+        "preprocessor + classifier, partial answers in all frames, frames/s": partial(
+            frames, without_search(samples), marks=True
+        ),
+        "preprocessor + classifier, searching, frames/s": partial(frames, trained(samples), marks=False),
     }
-    print(json.dumps({name: max(rate() for _ in range(TIMES)) for name, rate in rates.items()}))
+    fastest = {name: max(rate() for _ in range(TIMES)) for name, rate in rates.items()}
+    print(json.dumps(fastest | {"trainings with the search, per minute": trainings(samples)}))
 
 
 def trained(samples: Samples) -> Model:
     """Train a model that also searches."""
     return train_to_spot(samples.usable, samples.streams, DEFAULT)
+
+
+def without_search(samples: Samples) -> Model:
+    """Train a model that answers marked segments alone."""
+    return train(samples.usable, DEFAULT)
 
 
 def frames(model: Model, marks: bool) -> float:

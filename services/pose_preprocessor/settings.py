@@ -2,10 +2,10 @@
 
 from pydantic import Field
 
-from actum.settings import ServiceSettings
+from actum.settings import NodeSettings
 
 
-class Settings(ServiceSettings):
+class Settings(NodeSettings):
     """Settings of the preprocessor, beside those of every service."""
 
     reach_limit_m: float = Field(

@@ -9,6 +9,7 @@ import zipfile
 import zlib
 from pathlib import Path
 from typing import IO, Any
+from weakref import WeakValueDictionary
 
 import numpy as np
 from pydantic import ValidationError
@@ -125,6 +126,10 @@ def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
     return int(math.prod(shape) * dtype.itemsize)
 
 
+_IN_USE: WeakValueDictionary[str, Model] = WeakValueDictionary()
+"""The models in use by their ids: nodes of several sensors that read one file share its arrays."""
+
+
 class WatchedModel:
     """Loads the file whenever it has changed, may be read since, or is back where it could not be looked at."""
 
@@ -158,7 +163,7 @@ class WatchedModel:
             self._refuse(counters, str(error))
             return None
         self._loaded = True
-        return model
+        return _IN_USE.setdefault(model.id, model)
 
     def _refuse(self, counters: Counters, why: str) -> None:
         counters.reject("bad_model", why)

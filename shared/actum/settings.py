@@ -7,7 +7,7 @@ import socket
 import sys
 import tomllib
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, ValidationError
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
@@ -180,3 +180,24 @@ class ServiceSettings(BaseSettings):
             raise SettingsError(
                 f"ACTUM_CONFIG names {name}, which is not readable TOML ({error}): correct that file"
             ) from None
+
+
+class NodeSettings(ServiceSettings):
+    """The settings of a service that may serve several sensors in one process."""
+
+    sensor: str = Field(
+        "kinect0",
+        pattern=f"^{CHUNK.pattern}(,{CHUNK.pattern})*$",
+        description=(
+            "name of the sensor, such as kinect0; programs receive each other's messages only if they were started "
+            "with the same name. Several names, such as kinect0,kinect1: this process serves all of these sensors"
+        ),
+    )
+
+    @property
+    def of_each_sensor(self) -> list[Self]:
+        """The settings for each of the sensors; the first of them keeps the health file, which stands for all."""
+        sensors = list(dict.fromkeys(self.sensor.split(",")))
+        first = self.model_copy(update={"sensor": sensors[0]})
+        others = [self.model_copy(update={"sensor": sensor, "health_file": None}) for sensor in sensors[1:]]
+        return [first, *others]

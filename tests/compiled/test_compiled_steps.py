@@ -1,12 +1,11 @@
 """The compiled steps do what the NumPy code beside them does: installations with and without a compiler agree."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import TypeVar
-from unittest.mock import patch
 
 import numpy as np
 import pytest
+from benchmarks.rig.numpy_alone import numpy_alone
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -26,30 +25,8 @@ from unmarked import spotting_model
 
 pytestmark = pytest.mark.skipif(steps is None, reason="this installation found no C compiler")
 R = TypeVar("R")
-CALLERS = (
-    "pose_preprocessor.body",
-    "pose_preprocessor.heading",
-    "pose_preprocessor.part_motion",
-    "som_classifier.frame_activity",
-    "som_classifier.handedness",
-    "som_classifier.kinematics",
-    "som_classifier.pyramid",
-    "som_classifier.spotting.decoding",
-)
 ROUNDING_M = 1e-14
 """By how much positions may differ: some units in the last place of joints that are metres from the camera."""
-
-
-@contextmanager
-def numpy_alone() -> Iterator[None]:
-    patches = [patch(f"{caller}.steps", None) for caller in CALLERS]
-    for each in patches:
-        each.start()
-    try:
-        yield
-    finally:
-        for each in patches:
-            each.stop()
 
 
 def both(work: Callable[[], R]) -> tuple[R, R]:

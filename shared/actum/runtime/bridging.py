@@ -23,7 +23,7 @@ RING = 256
 def run_bridge(settings_type: type[S], build: Callable[[S], Bridge], flags: Sequence[str] | None = None) -> None:
     """Run a bridge as this process's service until SIGTERM or SIGINT, set by this process's flags or given ones."""
     settings, bridge = configured(settings_type, build, flags)
-    live(BridgeService(bridge, settings), settings)
+    live([BridgeService(bridge, settings)], settings)
 
 
 class BridgeService(StepService):

@@ -93,11 +93,13 @@ class Inbox:
             for topic in topics
         ]
         self._threads: list[threading.Thread] = []
+        self._sensor = sensor
 
     def start(self, receive: Callable[[zenoh.Sample], None]) -> None:
         """Call `receive` for each sample, from one thread per subscriber."""
         for subscriber in self._subscribers:
-            thread = threading.Thread(target=self._drain, args=(subscriber, receive), daemon=True)
+            name = f"{self._sensor} inbox"
+            thread = threading.Thread(target=self._drain, args=(subscriber, receive), name=name, daemon=True)
             thread.start()
             self._threads.append(thread)
 

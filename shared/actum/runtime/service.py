@@ -3,7 +3,7 @@
 import logging
 import threading
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import zenoh
@@ -29,6 +29,8 @@ class Service(ABC):
     def __init__(self, what: Servable, settings: ServiceSettings) -> None:
         self.name, counters = what.name, what.counters
         self.failed = False
+        self.is_healthy_beside: Callable[[], bool] = lambda: True
+        self.thread_name = settings.sensor
         self._commands = what.commands if isinstance(what, Commanded) else ()
         self._settings = settings
         self._counters = counters
@@ -52,8 +54,9 @@ class Service(ABC):
         if not place.claim(stop, settling_s):
             return
         queryables = self._queryables(session, stop)
-        given = (session, place, stop, self._healthy, self._store)
-        reporting = threading.Thread(target=self._reporter.report, args=given, name="reporting", daemon=True)
+        given = (session, place, stop, lambda: self.is_healthy and self.is_healthy_beside(), self._store)
+        name = f"{self.thread_name} reporting"
+        reporting = threading.Thread(target=self._reporter.report, args=given, name=name, daemon=True)
         reporting.start()
         try:
             self._work(session, Outbox(session), stop, place.vacant_s)
@@ -68,7 +71,9 @@ class Service(ABC):
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
         """Handle messages or put frames until stopped. No other instance has run for `vacant_s` seconds."""
 
-    def _healthy(self) -> bool:
+    @property
+    def is_healthy(self) -> bool:
+        """Whether it works."""
         return True
 
     def _store(self) -> None:  # noqa: B027 - most services write nothing

@@ -22,9 +22,10 @@ from actum.runtime.place import RETURNING_S, SETTLING_S, PlaceTakenError
 from actum.runtime.resuming import check_state_folder
 from actum.runtime.service import Service, SourceService
 from actum.runtime.session import RETRY_S, open_session, secret_config
+from actum.runtime.several import name_sensors, serve_all
 from actum.runtime.step_service import NodeService
 from actum.runtime.stopping import end_with_parent, stop_on_signals
-from actum.settings import ServiceSettings, SettingsError, complaint
+from actum.settings import NodeSettings, ServiceSettings, SettingsError, complaint
 
 log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
@@ -82,26 +83,36 @@ class FrontService(NodeService):
         finally:
             self._front.attach(None)
 
-    def _healthy(self) -> bool:
-        return super()._healthy() and self._front.working
+    @property
+    def is_healthy(self) -> bool:
+        """Whether its subscriptions are read, and people are served."""
+        return super().is_healthy and self._front.working
 
 
 def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str] | None = None) -> None:
-    """Run a node as this process's service until SIGTERM or SIGINT, set by this process's flags or given ones."""
-    settings, node = configured(settings_type, build, flags)
-    live(NodeService(node, settings), settings)
+    """Run a node as this process's service until SIGTERM or SIGINT, set by this process's flags or given ones.
+
+    Where the settings name several sensors, there is a node for each of them, and one session.
+    """
+
+    def of_each_sensor(settings: S) -> list[tuple[Node, S]]:
+        each = settings.of_each_sensor if isinstance(settings, NodeSettings) else [settings]
+        return [(build(own), own) for own in each]
+
+    settings, nodes = configured(settings_type, of_each_sensor, flags)
+    live([NodeService(node, own) for node, own in nodes], settings)
 
 
 def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
     """Run a source as this process's service until SIGTERM or SIGINT."""
     settings, source = configured(settings_type, build)
-    live(SourceService(source, settings), settings)
+    live([SourceService(source, settings)], settings)
 
 
 def run_front(settings_type: type[S], build: Callable[[S], Front]) -> None:
     """Run a front as this process's service until SIGTERM or SIGINT."""
     settings, front = configured(settings_type, build)
-    live(FrontService(front, settings), settings, front.serving)
+    live([FrontService(front, settings)], settings, front.serving)
 
 
 def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[str] | None = None) -> tuple[S, N]:
@@ -134,24 +145,28 @@ def log_level() -> str:
 
 
 def live(
-    service: Service,
+    services: Sequence[Service],
     settings: ServiceSettings,
     beside: Callable[[], AbstractContextManager[None]] = nullcontext,
 ) -> None:
     """Connect, serve until SIGTERM or SIGINT, and exit: with code 0, 1 after a bug, 3 where another runs already.
 
-    `beside` is entered before there is a router, and left at the end.
+    The services are those of one name, each for a sensor. `beside` is entered before there is a router, and left at
+    the end.
     """
-    logging.basicConfig(level=log_level(), format=f"{service.name}: %(message)s")
+    logging.basicConfig(level=log_level(), format=f"{services[0].name}: %(message)s")
     stop = stop_on_signals()
-    service.end_at_bugs(stop)
-    service.introduce()
+    if len(services) > 1:
+        name_sensors(settings.sensor.split(","))
+    for service in services:
+        service.end_at_bugs(stop)
+        service.introduce()
     with beside():
-        _serve(service, settings, stop)
-    sys.exit(1 if service.failed else 0)
+        _serve(services, settings, stop)
+    sys.exit(1 if any(service.failed for service in services) else 0)
 
 
-def _serve(service: Service, settings: ServiceSettings, stop: threading.Event) -> None:
+def _serve(services: Sequence[Service], settings: ServiceSettings, stop: threading.Event) -> None:
     began_s = time.monotonic()
     session = open_session(settings, stop)
     if session is None:
@@ -159,7 +174,7 @@ def _serve(service: Service, settings: ServiceSettings, stop: threading.Event) -
     settling_s = SETTLING_S if time.monotonic() - began_s < RETRY_S else RETURNING_S
     gc.freeze()  # objects that exist now live as long as the process: collections need not visit them again
     try:
-        service.serve(session, stop, settling_s)
+        serve_all(services, session, stop, settling_s)
     except PlaceTakenError as error:
         log.error("%s", error)
         sys.exit(TAKEN)

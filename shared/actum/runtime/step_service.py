@@ -51,7 +51,9 @@ class StepService(Service):
         finally:
             self._inbox.close()
 
-    def _healthy(self) -> bool:
+    @property
+    def is_healthy(self) -> bool:
+        """Whether its subscriptions are read."""
         return self._inbox is not None and self._inbox.working
 
     def _receive(self, sample: zenoh.Sample, outbox: Outbox, stop: threading.Event) -> None:
