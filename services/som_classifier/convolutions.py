@@ -13,6 +13,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Mask
+from actum.core import steps
 
 INSTANTS = 32
 """Instants that a segment is resampled to: the bits of the numbers that `_packed` returns."""
@@ -81,6 +82,11 @@ class Convolutions:
 
     def features(self, series: Floats32) -> Floats32:
         """Return the share of the instants at which each response exceeds each of its biases, (FILTERS * biases,)."""
+        if steps is not None:
+            compiled = np.empty(self.biases.size, np.float32)
+            inputs = np.ascontiguousarray(self.coordinates @ series)
+            steps.exceeding(inputs, SMALL_KERNELS, DILATED, WEIGHTS, self.biases, COUNTED_NUMBERS, COUNTS, compiled)
+            return compiled
         exceeds = _packed(self.responses(series)[:, None, :] > self.biases[:, :, None])
         shares: Floats32 = np.bitwise_count(exceeds & PACKED[:, None]) / COUNTS[:, None]
         return shares.ravel()
@@ -103,6 +109,9 @@ COUNTED = np.stack([_counted(number) for number in range(FILTERS)])
 """At which instants each filter counts, (FILTERS, INSTANTS): every other one only where it lies within the series."""
 COUNTS = COUNTED.sum(axis=1, dtype=np.float32)
 """At how many instants each filter counts, (FILTERS,)."""
+SMALL_KERNELS, DILATED = KERNELS.astype(np.int8), np.array(DILATIONS, np.int32)
+COUNTED_NUMBERS = COUNTED.astype(np.int32)
+"""`KERNELS`, `DILATIONS` and `COUNTED` as the compiled steps read them."""
 PACKED = _packed(COUNTED)
 """`COUNTED` as bits, (FILTERS,)."""
 

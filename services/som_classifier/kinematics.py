@@ -129,7 +129,10 @@ def movement_m(means: Array) -> float:
         means: (intervals, 15, 3), as `averaged` returns them.
     """
     joints = means.swapaxes(0, 1)
-    apart_m2 = np.nan_to_num(((joints[:, :, None] - joints[:, None]) ** 2).sum(axis=3))
+    apart = np.square(joints[:, :, None] - joints[:, None])
+    apart_m2 = apart[..., 0] + apart[..., 1] + apart[..., 2]
+    if np.isnan(means).any():
+        apart_m2 = np.nan_to_num(apart_m2)
     two_m2 = np.partition(apart_m2, -2, axis=0)[-2:]
     return float(np.sqrt((two_m2[1] + two_m2[0]).max() / 2))
 
@@ -141,8 +144,14 @@ def averaged(stamps_ns: NDArray[np.int64], postures: Array) -> Array:
         stamps_ns: (n,), rising.
         postures: (n, 15, 3), low-passed, metres, NaN where a joint is missing.
     """
-    first = np.unique((stamps_ns - stamps_ns[0]) // AVERAGED_NS, return_index=True)[1]
-    known = np.add.reduceat(~np.isnan(postures), first, axis=0, dtype=np.float64)
+    interval = (stamps_ns - stamps_ns[0]) // AVERAGED_NS
+    first = np.flatnonzero(np.diff(interval, prepend=-1))
+    missing = np.isnan(postures)
+    if not missing.any():
+        complete: Array = np.add.reduceat(postures, first, axis=0)
+        complete /= np.diff(first, append=len(postures))[:, None, None]
+        return complete
+    known = np.add.reduceat(~missing, first, axis=0, dtype=np.float64)
     sums: Array = np.add.reduceat(np.nan_to_num(postures), first, axis=0)
     means: Array = np.divide(sums, known, out=np.full_like(sums, np.nan), where=known > 0)
     return means

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Indices
+from actum.arrays import Array, Indices, stacked
 from actum.node import SECOND_NS
 from actum.som import Som
 from som_classifier.body_movement import BodyMovement, Evidence, log_movements
@@ -242,8 +242,9 @@ class PyramidModel(Model):
     def evidence(self, frames: Sequence[Frame]) -> Evidence:
         """Return what a complete segment is judged by, of the actor as seen or mirrored."""
         activities: list[FrameActivity] = [frame.activity for frame in frames]
-        stamps_ns = np.array([frame.stamp_ns for frame in frames if frame.kinematics is not None])
-        postures = np.array([frame.kinematics.posture for frame in frames if frame.kinematics is not None])
+        stamps_ns = np.array([frame.stamp_ns for frame in frames])
+        of_frames = [frame.kinematics.posture for frame in frames if frame.kinematics is not None]
+        postures = stacked(list(map(np.ascontiguousarray, of_frames)), *of_frames[0].shape)
         as_read = mirrored(postures) if self.reads_in_mirror(activities) else postures
         features = self.opinion.convolutions.features(resampled(as_read))
         pooled = self.pyramid.vector(self.prefix_sums(activities))

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,9 +52,19 @@ class Verifier:
             features: (features,), of the convolutions.
             log_error: the mean logarithm of the posture map's squared quantization error (m²).
         """
-        score = pooled @ self.pooled_axes[:, action] + features @ self.convolution_axes[:, action]
+        score = pooled @ self._pooled_axes_in_turn[action] + features @ self._convolution_axes_in_turn[action]
         unlike = max(log_error - self.usual_log_errors[action], 0.0)
         return float(score + self.offsets[action]) - LOG_ERROR_COST * unlike**2
+
+    @cached_property
+    def _pooled_axes_in_turn(self) -> NDArray[np.float32]:
+        """The axes, one after the other in memory, (actions, inputs): each is read alone."""
+        return np.ascontiguousarray(self.pooled_axes.T)
+
+    @cached_property
+    def _convolution_axes_in_turn(self) -> NDArray[np.float32]:
+        """The same of the convolutions', (actions, features)."""
+        return np.ascontiguousarray(self.convolution_axes.T)
 
     def probability(self, likeness: float) -> float:
         """Return the probability that a segment of this likeness is a true instance of its action."""

@@ -14,7 +14,7 @@
 #define VECTORISED
 #endif
 
-enum { SIDES = 2, CHANNELS = 4, JOINTS = 15, COORDINATES = 45, PARTS = 5, LIMBS = 4, MOMENTS = 8 };
+enum { SIDES = 2, CHANNELS = 4, JOINTS = 15, COORDINATES = 45, PARTS = 5, LIMBS = 4, MOMENTS = 8, MOST_INSTANTS = 64 };
 
 /* Release the buffers that were taken, and return None, or NULL where an error is set. */
 static PyObject *released(Py_buffer *buffers, int count)
@@ -620,10 +620,61 @@ static PyObject *decoded(PyObject *module, PyObject *args)
     return found;
 }
 
+/* The responses of one kernel of -1 and 2 to an input that is 0 beyond its ends. */
+VECTORISED static void respond(const float *input, const int8_t *kernel, int weights, int dilation, int instants, float *out)
+{
+    float padded[3 * MOST_INSTANTS] = {0};
+    memcpy(padded + MOST_INSTANTS, input, instants * sizeof *input);
+    for (int w = 0; w < weights; w++) {
+        const float *from = padded + MOST_INSTANTS + (w - weights / 2) * dilation;
+        float weight = kernel[w];
+        for (int at = 0; at < instants; at++)
+            out[at] = (w ? out[at] : 0.0f) + from[at] * weight;
+    }
+}
+
+VECTORISED static int count_above(const float *response, float bias, const int32_t *counted, int instants)
+{
+    int count = 0;
+    for (int at = 0; at < instants; at++)
+        count += counted[at] & -(response[at] > bias);
+    return count;
+}
+
+PyDoc_STRVAR(exceeding_doc,
+    "exceeding(inputs, kernels, dilations, weights, biases, counted, counts, out)\n--\n\n"
+    "Write for each filter and each of its biases the share of the instants that count at which the response exceeds it.");
+static PyObject *exceeding(PyObject *module, PyObject *args)
+{
+    Py_buffer b[7];
+    int weights;
+    if (!PyArg_ParseTuple(args, "y*y*y*iy*y*y*w*", &b[0], &b[1], &b[2], &weights, &b[3], &b[4], &b[5], &b[6]))
+        return NULL;
+    const int8_t *kernels = b[1].buf;
+    const int32_t *dilations = b[2].buf;
+    const int32_t *counted = b[4].buf;
+    const float *inputs = b[0].buf, *biases = b[3].buf, *counts = b[5].buf;
+    float *out = b[6].buf, response[MOST_INSTANTS];
+    Py_ssize_t filters = b[5].len / (Py_ssize_t)sizeof(float), of_each = b[6].len / (Py_ssize_t)sizeof(float) / filters;
+    Py_ssize_t kernel_count = b[1].len / weights;
+    int instants = (int)(b[4].len / 4 / filters);
+    if (instants > MOST_INSTANTS)
+        PyErr_SetString(PyExc_ValueError, "more instants than the compiled step has room for");
+    for (Py_ssize_t f = 0; f < filters && !PyErr_Occurred(); f++) {
+        respond(inputs + f * instants, kernels + f % kernel_count * weights, weights, dilations[f / kernel_count], instants,
+                response);
+        for (Py_ssize_t n = 0; n < of_each; n++)
+            out[f * of_each + n]
+                = (float)count_above(response, biases[f * of_each + n], counted + f * instants, instants) / counts[f];
+    }
+    return released(b, 7);
+}
+
 static PyMethodDef methods[] = {
     {"accumulated", accumulated, METH_VARARGS, accumulated_doc},
     {"body", body, METH_VARARGS, body_doc},
     {"decoded", decoded, METH_VARARGS, decoded_doc},
+    {"exceeding", exceeding, METH_VARARGS, exceeding_doc},
     {"exponents", exponents, METH_VARARGS, exponents_doc},
     {"left", left, METH_VARARGS, left_doc},
     {"map_inputs", map_inputs, METH_VARARGS, map_inputs_doc},

@@ -17,6 +17,7 @@ from people import FRAME_NS, STANDING, skeleton
 from pose_preprocessor.body import body_of, body_of_known
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
+from som_classifier.convolutions import COORDINATES, FILTERS, INSTANTS, Convolutions
 from som_classifier.frames import Frame, frame_of
 from som_classifier.kinematics import KinematicsFilter
 from som_classifier.pyramid import PrefixSums, Pyramid, running_sums
@@ -115,6 +116,15 @@ def test_the_same_candidates_are_decided_on(
     begins_anew = np.isin(np.arange(len(decisions_ns)), list(restarts))
     compiled, plain = both(lambda: decoded(Decoder(5, 60, overlap), spans, decisions_ns, begins_anew))
     assert compiled == plain
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_features_of_convolutions_are_the_same_to_the_bit(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    coordinates = (rng.random((FILTERS, COORDINATES)) < 0.1).astype(np.float32)
+    convolutions = Convolutions(coordinates, rng.normal(0.0, 1.0, (FILTERS, 4)).astype(np.float32))
+    series = rng.normal(0.0, 0.3, (COORDINATES, INSTANTS)).astype(np.float32)
+    np.testing.assert_array_equal(*both(lambda: convolutions.features(series)))
 
 
 @given(st.integers(0, 30), st.integers(0, 2**32 - 1))
