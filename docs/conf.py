@@ -44,6 +44,7 @@ RESULTS = {
     "The paper: what was tried": "benchmarks/paper/README",
     "Marker tracker": "benchmarks/tracker/results",
     "Latency": "benchmarks/latency/results",
+    "Latency and speed: what was tried": "benchmarks/latency/README",
     "Maps": "benchmarks/som",
 }
 PROJECT = ["deploy/README", "CONTRIBUTING", "CHANGELOG", "SECURITY"]

@@ -179,7 +179,8 @@ def test_a_service_goes_on_where_its_health_file_cannot_be_written(running: Syst
 
 
 @pytest.mark.parametrize(
-    ("bug", "where"), [("status", "in the thread reporting"), ("thread", "in the thread own"), ("info", "describing")]
+    ("bug", "where"),
+    [("status", "in the thread kinect0 reporting"), ("thread", "in the thread own"), ("info", "describing")],
 )
 def test_a_service_of_which_a_part_has_a_bug_ends_and_says_so_instead_of_going_on_mute(
     running: System, bug: str, where: str
