@@ -17,6 +17,7 @@ from actum_model_trainer.pooling import PooledVectors, Pooling
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, provenance
 from actum_model_trainer.samples import LabelledStream, SegmentSample
+from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from actum_model_trainer.verifier_training import Shown, trained_verifier
 from som_classifier.convolutions import SecondOpinion
@@ -143,14 +144,14 @@ def _fitted_stages(
 ) -> list[FittedStage]:
     """Fit the discriminants of each stage; targets and folds (n,) are those of the samples."""
     indicators = np.eye(targets.max() + 1)
-    fitted = []
-    for done, (vectors, sample_indices, _) in enumerate(pooled):
-        progress("discriminant axes", done, len(pooled))
+
+    def fitted(of_stage: PooledVectors) -> FittedStage:
+        vectors, sample_indices, _ = of_stage
         vector_targets = targets[sample_indices]
         discriminants = fit_discriminants(vectors, indicators[vector_targets], folds[sample_indices], shrinkage)
-        fitted.append(FittedStage(discriminants, sample_indices, vector_targets))
-    progress("discriminant axes", len(pooled), len(pooled))
-    return fitted
+        return FittedStage(discriminants, sample_indices, vector_targets)
+
+    return side_by_side(fitted, pooled, "discriminant axes", progress)
 
 
 def _with_opinion(

@@ -33,6 +33,8 @@ from som_classifier.presets import PRESETS
 
 PRINT_S = 0.1
 """Shortest time between two lines of one stage (s): the page shows no more."""
+YIELDING = 10
+"""Added to the process's niceness: on a machine that recognises meanwhile, that comes first."""
 MODEL, TAKE = "model.npz", "take.mcap"
 """What a job leaves in its folder."""
 
@@ -123,6 +125,8 @@ def import_video(arguments: Arguments, progress: Progress) -> dict[str, Any]:
 def main() -> None:
     """Do the job that the argument describes."""
     end_with_parent()
+    if hasattr(os, "nice"):
+        os.nice(YIELDING)
     arguments = Arguments.model_validate_json(sys.argv[1])
     jobs: dict[str, Callable[[Arguments, Progress], dict[str, Any]]] = {
         "train": train,

@@ -11,6 +11,7 @@ from actum_model_trainer.augmentation import Variant, augmentation_for, varied
 from actum_model_trainer.discriminants import dual_form
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
+from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.spotting.common_head import with_common
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
 from actum_model_trainer.spotting.training_windows import TrainingWindows
@@ -28,7 +29,7 @@ class FoldedHeads:
 
     def __init__(self, fit: Callable[[int | None], CompletenessHeads], fold_count: int) -> None:
         self._fit = fit
-        self.without = [fit(fold) for fold in range(fold_count)]
+        self.without = side_by_side(fit, range(fold_count))
 
     @cached_property
     def all(self) -> CompletenessHeads:

@@ -10,6 +10,7 @@ from actum.arrays import Floats, Indices
 from actum.node import SECOND_NS
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
+from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
 from actum_model_trainer.spotting.heads_training import FoldedHeads, Folds
 from actum_model_trainer.spotting.training_windows import live_windows
@@ -45,13 +46,12 @@ def scanned(
 ) -> list[ScannedStream]:
     """Answer all live windows of the streams, each by heads that were trained without its fold."""
     durations_ns = np.rint(np.array(metadata.window_durations_s) * SECOND_NS).astype(np.int64)
-    answered = []
-    for done, stream in enumerate(streams):
-        progress("searching streams", done, len(streams))
+
+    def answered(stream: LabelledStream) -> ScannedStream:
         windows = live_windows(stream.stamps_ns, durations_ns, round(metadata.interval_s * SECOND_NS))
-        answered.append(ScannedStream(stream, windows, _answers(model, stream, windows, heads, folds)))
-    progress("searching streams", len(streams), len(streams))
-    return answered
+        return ScannedStream(stream, windows, _answers(model, stream, windows, heads, folds))
+
+    return side_by_side(answered, streams, "searching streams", progress)
 
 
 def _answers(
