@@ -85,6 +85,8 @@ static PyObject *pooled(PyObject *module, PyObject *args)
     float *at_border = PyMem_Malloc(count * units * sizeof(float));
     if (at == NULL || at_border == NULL)
         PyErr_NoMemory();
+    else if (PyList_Size(sums) != frames + 1 || frames < 1)
+        PyErr_SetString(PyExc_ValueError, "the sums are not as many as the frames and one");
     for (Py_ssize_t k = 0; k < count && !PyErr_Occurred(); k++) {
         Py_buffer row[3];
         at[k] = instant_of(borders[k], travelled_um, frames);
@@ -94,7 +96,9 @@ static PyObject *pooled(PyObject *module, PyObject *args)
         const Py_ssize_t rows[3] = {0, below, below + 1};
         while (n < 3 && PyObject_GetBuffer(PyList_GetItem(sums, rows[n]), &row[n], PyBUF_SIMPLE) == 0)
             n++;
-        if (n == 3)
+        if (n == 3 && (row[0].len != units * 4 || row[1].len != units * 4 || row[2].len != units * 4))
+            PyErr_SetString(PyExc_ValueError, "the sums are not of the length of a cell");
+        else if (n == 3)
             sum_at_border(row[0].buf, row[1].buf, row[2].buf, (float)(at[k] - (double)below), at_border + k * units, units);
         while (n-- > 0)
             PyBuffer_Release(&row[n]);
