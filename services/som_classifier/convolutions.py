@@ -85,7 +85,8 @@ class Convolutions:
         if steps is not None:
             compiled = np.empty(self.biases.size, np.float32)
             inputs = np.ascontiguousarray(self.coordinates @ series)
-            steps.exceeding(inputs, SMALL_KERNELS, DILATED, WEIGHTS, self.biases, COUNTED_NUMBERS, COUNTS, compiled)
+            biases = np.ascontiguousarray(self.biases)
+            steps.exceeding(inputs, SMALL_KERNELS, DILATED, WEIGHTS, biases, COUNTED_NUMBERS, COUNTS, compiled)
             return compiled
         exceeds = _packed(self.responses(series)[:, None, :] > self.biases[:, :, None])
         shares: Floats32 = np.bitwise_count(exceeds & PACKED[:, None]) / COUNTS[:, None]

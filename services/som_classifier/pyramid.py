@@ -28,10 +28,10 @@ def quantised(activities: Floats) -> Sums:
     return whole
 
 
-def running_sums(activities: NDArray[np.float32]) -> Sums:
+def running_sums(activities: Floats) -> Sums:
     """Return the sums of activities (n, units), quantised, before each row and after the last, (n + 1, units)."""
     sums = np.zeros((len(activities) + 1, activities.shape[1]), np.uint32)
-    if steps is not None:
+    if steps is not None and activities.dtype == np.float32:
         steps.running_sums(activities, SCALE, activities.shape[1], sums)
         return sums
     for row, before, after in zip(quantised(activities), sums, sums[1:], strict=False):

@@ -515,6 +515,10 @@ static PyObject *running_sums(PyObject *module, PyObject *args)
         return NULL;
     const float *activities = b[0].buf;
     uint32_t *sums = b[1].buf;
+    if (b[1].len != b[0].len + units * (Py_ssize_t)sizeof *sums) {
+        PyErr_SetString(PyExc_ValueError, "there are not as many rows of sums as rows of activities and one");
+        return released(b, 2);
+    }
     memset(sums, 0, units * sizeof *sums);
     for (Py_ssize_t row = 0; row < b[0].len / (Py_ssize_t)sizeof(float) / units; row++)
         add_row(activities + row * units, scale, sums + row * units, sums + (row + 1) * units, units);

@@ -196,8 +196,5 @@ class NodeSettings(ServiceSettings):
 
     @property
     def of_each_sensor(self) -> list[Self]:
-        """The settings for each of the sensors; the first of them keeps the health file, which stands for all."""
-        sensors = list(dict.fromkeys(self.sensor.split(",")))
-        first = self.model_copy(update={"sensor": sensors[0]})
-        others = [self.model_copy(update={"sensor": sensor, "health_file": None}) for sensor in sensors[1:]]
-        return [first, *others]
+        """The settings for each of the sensors."""
+        return [self.model_copy(update={"sensor": sensor}) for sensor in dict.fromkeys(self.sensor.split(","))]

@@ -131,6 +131,7 @@ def test_features_of_convolutions_are_the_same_to_the_bit(seed: int) -> None:
 def test_running_sums_are_the_same_to_the_bit(frames: int, seed: int) -> None:
     activities = np.random.default_rng(seed).random((frames, 50)).astype(np.float32)
     np.testing.assert_array_equal(*both(lambda: running_sums(activities)))
+    np.testing.assert_array_equal(*both(lambda: running_sums(activities.astype(np.float64))))
 
 
 @pytest.mark.parametrize("spoilt", ["hips", "bone", "far"])

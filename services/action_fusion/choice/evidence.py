@@ -26,6 +26,10 @@ MOST_OBJECTS = 32
 """Most objects that are compared with each hand, the nearest ones: bounds the computing time."""
 
 
+BEYOND_M = 0.15
+"""How much further from a hand than a held tool reaches an object is looked at: no cue looks as far."""
+
+
 @dataclass(frozen=True)
 class Choice:
     """The object acted on (`track`), or `why` there is none.
@@ -129,17 +133,21 @@ def _proximities(actor: Actor, tracks: Sequence[ObjectTrack], sides: Sequence[Ha
 
 
 def _concerned(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[Comotion]:
-    """Pair everyone's hands with the objects that came within a held tool's reach of an own hand.
+    """Pair everyone's hands with the objects that came within a held tool's reach of an own hand, or were displaced.
 
     Only the nearest `MOST_OBJECTS` count, the nearest one first.
     """
     of_actor = list(hands.own.values())
-    own = pairs_of(tracks, of_actor, settings.reach_with_tool_m, settings)
+    own = pairs_of(tracks, of_actor, settings.reach_with_tool_m + BEYOND_M, settings)
     nearest_m: dict[ObjectTrack, float] = {}
     for pair in own:
         nearest_m[pair.track] = min(float(pair.distances_m.min()), nearest_m.get(pair.track, np.inf))
-    in_reach = [track for track, distance_m in nearest_m.items() if distance_m <= settings.reach_with_tool_m]
-    concerned = sorted(in_reach, key=nearest_m.__getitem__)[:MOST_OBJECTS]
+    nearest = sorted(nearest_m, key=nearest_m.__getitem__)[:MOST_OBJECTS]
+    concerned = [
+        track
+        for track in nearest
+        if nearest_m[track] <= settings.reach_with_tool_m or track.is_displaced(settings.moved_m)
+    ]
     kept = [pair for pair in own if pair.track in concerned]
     nearest_first = sorted(kept, key=lambda pair: (of_actor.index(pair.hand), concerned.index(pair.track)))
     return nearest_first + pairs_of(concerned, hands.others, settings.reach_m, settings)

@@ -25,9 +25,9 @@ class Columns:
         return self._count
 
     def append(self, row: Any, kept: int) -> None:
-        """Add a row; those before the newest `kept`, this one included, may be forgotten."""
+        """Add a row; those before the newest `kept`, this one included, may be forgotten; there may be fewer."""
         if self._count == len(self._rows):
-            live = self._rows[self._count + 1 - kept :]
+            live = self._rows[max(self._count + 1 - kept, 0) :]
             self._rows = np.empty((max(2 * kept, FIRST_ROWS), *live.shape[1:]), live.dtype)
             self._rows[: len(live)] = live
             self._count = len(live)

@@ -28,7 +28,7 @@ class Service(ABC):
 
     def __init__(self, what: Servable, settings: ServiceSettings) -> None:
         self.name, counters = what.name, what.counters
-        self.failed = False
+        self.failed = self.has_ended = False
         self.is_healthy_beside: Callable[[], bool] = lambda: True
         self.thread_name = settings.sensor
         self._commands = what.commands if isinstance(what, Commanded) else ()
@@ -61,6 +61,7 @@ class Service(ABC):
         try:
             self._work(session, Outbox(session), stop, place.vacant_s)
         finally:
+            self.has_ended = True
             stop.set()
             reporting.join(timeout=0.5)
             for queryable in queryables:
@@ -79,16 +80,8 @@ class Service(ABC):
     def _store(self) -> None:  # noqa: B027 - most services write nothing
         """Have stored on the disk what was written, once a second."""
 
-    def end_at_bugs(self, stop: threading.Event) -> None:
-        """Have the process end where any of its threads does by an exception: without it a service is mute or deaf."""
-
-        def ended(thread: threading.ExceptHookArgs) -> None:
-            if not stop.is_set() and thread.exc_value is not None:
-                self._end_at_bug(f"in the thread {thread.thread and thread.thread.name}", thread.exc_value, stop)
-
-        threading.excepthook = ended
-
-    def _end_at_bug(self, where: str, error: BaseException, stop: threading.Event) -> None:
+    def end_at_bug(self, where: str, error: BaseException, stop: threading.Event) -> None:
+        """Log a bug, and stop."""
         log.error(
             "the service stops, because a bug occurred %s: report the bug with the lines that follow",
             where,
@@ -103,7 +96,7 @@ class Service(ABC):
         try:
             yield
         except Exception as error:
-            self._end_at_bug(where, error, stop)
+            self.end_at_bug(where, error, stop)
 
     def _queryables(self, session: zenoh.Session, stop: threading.Event) -> "list[zenoh.Queryable[None]]":
         """Declare what answers queries for the description of the service, and for its commands where it has any."""
@@ -112,7 +105,7 @@ class Service(ABC):
         if self._commands:
 
             def end_at_bug(where: str, error: BaseException) -> None:
-                self._end_at_bug(where, error, stop)
+                self.end_at_bug(where, error, stop)
 
             commander = Commander(self._commands, self._settings, self.name, self._counters, self._lock, end_at_bug)
             queryables.append(commander.declare(session))

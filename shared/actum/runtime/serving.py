@@ -22,7 +22,7 @@ from actum.runtime.place import RETURNING_S, SETTLING_S, PlaceTakenError
 from actum.runtime.resuming import check_state_folder
 from actum.runtime.service import Service, SourceService
 from actum.runtime.session import RETRY_S, open_session, secret_config
-from actum.runtime.several import name_sensors, serve_all
+from actum.runtime.several import end_at_bugs, name_sensors, serve_all
 from actum.runtime.step_service import NodeService
 from actum.runtime.stopping import end_with_parent, stop_on_signals
 from actum.settings import NodeSettings, ServiceSettings, SettingsError, complaint
@@ -158,8 +158,8 @@ def live(
     stop = stop_on_signals()
     if len(services) > 1:
         name_sensors(settings.sensor.split(","))
+    end_at_bugs(services, stop)
     for service in services:
-        service.end_at_bugs(stop)
         service.introduce()
     with beside():
         _serve(services, settings, stop)

@@ -23,7 +23,10 @@ def serve_all(services: Sequence[Service], session: zenoh.Session, stop: threadi
         services[0].serve(session, stop, settling_s)
         return
     running = [_Served(service, session, settling_s) for service in services]
-    services[0].is_healthy_beside = lambda: all(each.service.is_healthy for each in running if each.thread.is_alive())
+    for served in running:  # all write one health file: that of the process
+        served.service.is_healthy_beside = lambda: all(
+            each.service.is_healthy for each in running if each.thread.is_alive()
+        )
     while any(each.thread.is_alive() for each in running):
         if wait_for(stop, LOOK_S) or any(each.refusal or each.service.failed for each in running):
             break
@@ -53,6 +56,19 @@ class _Served:
             self.service.serve(session, self.stop, settling_s)
         except PlaceTakenError as error:
             self.refusal = error
+
+
+def end_at_bugs(services: Sequence[Service], stop: threading.Event) -> None:
+    """Have the process end where any of its threads does by an exception: without it a service is mute or deaf."""
+
+    def ended(thread: threading.ExceptHookArgs) -> None:
+        name = str(thread.thread and thread.thread.name)
+        sensor = name.partition(" ")[0]
+        owner = next((each for each in services if each.thread_name == sensor), services[0])
+        if not stop.is_set() and not owner.has_ended and thread.exc_value is not None:
+            owner.end_at_bug(f"in the thread {name}", thread.exc_value, stop)
+
+    threading.excepthook = ended
 
 
 def name_sensors(sensors: Sequence[str]) -> None:
