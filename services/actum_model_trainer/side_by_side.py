@@ -1,4 +1,4 @@
-"""Does parts of a training side by side, in threads: NumPy and BLAS compute without Python's lock.
+"""Runs independent parts of a training in parallel threads: NumPy and BLAS compute without Python's lock.
 
 Each part computes what it would alone, with one thread of BLAS, so that the model does not depend on the processors.
 """
@@ -17,7 +17,10 @@ Result = TypeVar("Result")
 def side_by_side(
     work: Callable[[Item], Result], items: Sequence[Item], stage: str = "", progress: Progress = silent
 ) -> list[Result]:
-    """Return the work's results for all items, in their order; as many at once as this process may use processors."""
+    """Return the results of the work on all items, in their order; there are as many threads as processors to use.
+
+    The progress is that of the stage.
+    """
     processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     results = []
     with ThreadPoolExecutor(processors) as pool:

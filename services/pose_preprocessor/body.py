@@ -44,7 +44,10 @@ def body_of(joints: Array) -> Body:
 
 
 def body_of_known(joints: Array, reach_limit_m: float, bone_limit_m: float) -> Body | None:
-    """Do the same for joints that are all known by a compiled step; None without one, or where they cannot be used."""
+    """Return the body of joints that are all known, by a compiled step; None without one.
+
+    None, too, where a joint is beyond the reach, a bone too long, or the frame not defined.
+    """
     if steps is None:
         return None
     numbers = np.empty(45 + 16 + 45 + 45)

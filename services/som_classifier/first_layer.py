@@ -166,7 +166,13 @@ class FirstMaps:
         return self._normalised(np.concatenate(blocks, axis=1))
 
     def unnormalised_activities(self, steps: ModuleType, posture: Floats, velocity: Floats) -> NDArray[np.float32]:
-        """Return the same before the sums are divided by, of a frame whose joints are all known, by compiled steps."""
+        """Return one frame's activities, (2, units), before they are divided by their sums, by compiled steps.
+
+        Args:
+            steps: the compiled functions.
+            posture: (15, 3), contiguous, no joint missing.
+            velocity: (15, 3), contiguous.
+        """
         together, centred = self._together, np.empty((2, len(_MINUEND)), np.float32)
         steps.map_inputs(posture, velocity, *MIRRORED_FRAME, _MINUEND, _SUBTRAHEND, _FACTORS, together.centre, centred)
         activities = np.empty((2, self.units), np.float32)

@@ -90,7 +90,7 @@ class FrameEncoder:
         return winners
 
     def _add_compiled(self, steps: ModuleType, kinematics: Kinematics, motion: Array) -> list[int]:
-        """Do the same for a frame whose joints are all known."""
+        """Add a frame whose joints are all known, by compiled steps; return its winners as `_add` does."""
         posture, velocity = np.ascontiguousarray(kinematics.posture), np.ascontiguousarray(kinematics.velocity)
         before, totals_before, winners = self._sums, self._totals, np.empty(2, np.int64)
         activities = self._first.unnormalised_activities(steps, posture, velocity)

@@ -10,6 +10,9 @@ from actum.runtime.place import PlaceTakenError
 from actum.runtime.service import Service
 from actum.runtime.stopping import wait_for
 
+LOOK_S = 0.1
+"""How late (s) the end of one service may be noticed."""
+
 
 def serve_all(services: Sequence[Service], session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
     """Serve until all have ended: when stopped, or each when another instance takes over its sensor.
@@ -36,10 +39,6 @@ def serve_all(services: Sequence[Service], session: zenoh.Session, stop: threadi
         each.thread.join()
     for refusal in filter(None, (each.refusal for each in running)):
         raise refusal
-
-
-LOOK_S = 0.1
-"""How late (s) the end of one service may be noticed."""
 
 
 class _Served:
