@@ -3,8 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Joint, Skeleton
+from actum.messages import Agent, Joint, Posture, Segment, Skeleton
+from actum.node import SECOND_NS
 from actum.skeletons import INDEX
+from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 
 STANDING = np.array(
     [
@@ -74,4 +77,20 @@ def reaches(frames: int, first_ns: int = 0, seed: int = 0, noise_m: float = 0.00
     return [
         skeleton(first_ns + i * FRAME_NS, reaching(phase) + rng.normal(0, noise_m, (15, 3)), seq=i)
         for i, phase in enumerate(phases)
+    ]
+
+
+def postures(from_s: float, to_s: float) -> list[Posture]:
+    """Postures of a person who reaches, thirty a second."""
+    node = PosePreprocessor(PoseSettings.defaults())
+    frames = reaches(round(to_s * SECOND_NS / FRAME_NS))
+    found = [posture for frame in frames for posture in node.handle(frame) if isinstance(posture, Posture)]
+    return [posture for posture in found if posture.stamp_ns >= from_s * SECOND_NS]
+
+
+def marks(name: str, start_s: float, end_s: float) -> list[Segment]:
+    bounds = (("start", start_s), ("end", end_s))
+    return [
+        Segment(sensor="kinect0", kind=kind, segment_id=name, stamp_ns=round(stamp_s * SECOND_NS))
+        for kind, stamp_s in bounds
     ]

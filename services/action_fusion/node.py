@@ -60,6 +60,7 @@ class ActionFusion:
 
     name = "action_fusion"
     inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.OBJECTS, keys.ACTION)
+    answers = keys.EVENT
 
     def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
@@ -78,6 +79,11 @@ class ActionFusion:
         self._before = Before([answer for answer in answers if isinstance(answer, Event)], resumed=True)
         for flow in self._flows.values():
             flow.expect()
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether an action waits for its samples."""
+        return bool(self._pending)
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:

@@ -22,8 +22,8 @@ EVERYTHING = (f"{BASE}/**", f"{BASE}/**/{ADVANCED}")
 """All keys of all sensors."""
 ROUTER_ITSELF = "@/*/router"
 """The key on which a router describes itself: who hears nothing else knows by it that nothing is hidden."""
-TOKENS = ("alive/{0}/*", "candidate/{0}/*/*", "successor/{0}/*/*")
-"""The liveliness tokens by which instances of a service hold or ask for their place."""
+TOKENS = ("alive/{0}/*", "candidate/{0}/*/*", "successor/{0}/*/*", "member/{0}/*/*")
+"""The liveliness tokens by which instances of a service hold, share or ask for their place."""
 WISHES = ("declare_subscriber", "declare_queryable", "query", "liveliness_query", "declare_liveliness_subscriber")
 """What a router tells a client of others, so that it knows for whom to put and answers queries: no content."""
 LOOKING = ("liveliness_query", "declare_liveliness_subscriber")
@@ -72,7 +72,7 @@ def rules(role: Role, sensor: str, ros_domain: int | None) -> Iterator[Rule]:
     tokens = [f"{BASE}/{of}/{token.format(service)}" for service in role.services for token in TOKENS]
     asked = _asked(role, of)
     places = [keys.claims(of, service) for service in role.services]
-    looked = [f"{BASE}/{of}/alive/**"] if role.inspects else []
+    looked = [f"{BASE}/{of}/alive/**", f"{BASE}/{of}/member/**"] if role.inspects else []
     if role.speaks_ros and ros_domain is not None:
         nodes = ROS_TOKENS.format(ros_domain)
         tokens, looked = [*tokens, nodes], [*looked, nodes]

@@ -70,7 +70,7 @@ CLASSIFIER = Role(
     "the classifier, which also publishes the segments that it finds",
     services=("som_classifier",),
     puts=(keys.SEGMENT, keys.ACTION, keys.HELD_BACK),
-    reads=(keys.POSTURE, keys.SEGMENT),
+    reads=(keys.POSTURE, keys.SEGMENT, keys.ACTION),
 )
 TRACKER = Role(
     "tracker",
@@ -84,7 +84,7 @@ FUSION = Role(
     "the fusion",
     services=("action_fusion",),
     puts=(keys.EVENT,),
-    reads=(keys.POSTURE, keys.OBJECTS, keys.ACTION),
+    reads=(keys.POSTURE, keys.OBJECTS, keys.ACTION, keys.EVENT),
 )
 TRAINER = Role(
     "trainer",

@@ -53,6 +53,7 @@ class SomClassifier:
 
     name = "som_classifier"
     inputs = (keys.POSTURE, keys.SEGMENT)
+    answers = keys.ACTION
 
     def __init__(
         self,
@@ -93,6 +94,11 @@ class SomClassifier:
     def remember(self, answers: Sequence[Message]) -> None:
         """Take the answers given before this process was there: it gives no others to their segments."""
         self._segmenter.remember([answer for answer in answers if isinstance(answer, Action)])
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a marked segment is open, or the search sees an action going on."""
+        return self._segmenter.is_busy
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
         """Receive a posture, a mark or a tick; return the marks, partial and final actions that follow from it."""

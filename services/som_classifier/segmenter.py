@@ -46,6 +46,11 @@ class Segmenter:
         self._is_resumed = False
         self._now_ns = self._first_tick_ns = -1
 
+    @property
+    def is_busy(self) -> bool:
+        """Whether a marked segment is open, or the search sees an action going on."""
+        return bool(self._open) or self.streams.any_ongoing
+
     def remember(self, answers: Sequence[Action]) -> None:
         """Take the answers given before this process was there; marks that were put meanwhile may come now."""
         self._is_resumed = True

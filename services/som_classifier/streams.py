@@ -108,6 +108,11 @@ class Streams:
         for stream in self._streams.values():
             stream.search.adjust(plan)
 
+    @property
+    def any_ongoing(self) -> bool:
+        """Whether somebody's search sees an action going on."""
+        return any(stream.search.is_ongoing for stream in self._streams.values())
+
     def of(self, agent: int) -> Stream | None:
         """Return an agent's stream, if there is one."""
         return self._streams.get(agent)

@@ -158,18 +158,19 @@ class Claim:
     """An instance's claim to be the only instance of its service for a sensor.
 
     Attributes:
-        role: `alive` runs, `candidate` is about to start, `successor` asks the running instance to stop.
+        role: `alive` runs, `candidate` is about to start, `successor` asks the running instance to stop, `member`
+            serves the sensor whenever it falls to this instance's share.
         instance: the instance's name.
         session: the id of its Zenoh session, which a key with the role `alive` does not hold.
     """
 
-    role: Literal["alive", "candidate", "successor"]
+    role: Literal["alive", "candidate", "successor", "member"]
     instance: str
     session: str = ""
 
 
 def claim_key(claim: Claim, sensor: str, service: str) -> str:
-    """Build the key of a candidate's or a successor's liveliness token."""
+    """Build the key of the liveliness token of a candidate, a successor or a member."""
     return f"{BASE}/{chunk(sensor)}/{claim.role}/{chunk(service)}/{chunk(claim.instance)}/{chunk(claim.session)}"
 
 
@@ -183,7 +184,7 @@ def claim_of(text: str) -> Claim | None:
     match text.split("/"):
         case [_, _, "alive", _, instance]:
             return Claim("alive", instance)
-        case [_, _, ("candidate" | "successor") as role, _, instance, session]:
+        case [_, _, ("candidate" | "successor" | "member") as role, _, instance, session]:
             return Claim(role, instance, session)
         case _:
             return None

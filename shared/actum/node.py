@@ -81,7 +81,18 @@ class Node(Servable, Protocol):
 
 @runtime_checkable
 class Remembering(Protocol):
-    """A node that answers segments, each once, also across its restarts."""
+    """A node that answers segments, each once, also across its restarts.
+
+    Attributes:
+        answers: the topic of its answers.
+    """
+
+    answers: keys.Topic
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a segment is under way whose answer another process would have to begin anew."""
+        ...
 
     def remember(self, answers: Sequence[Message]) -> None:
         """Take the answers that were given before this process was started: to their segments it gives no others.

@@ -194,6 +194,15 @@ class NodeSettings(ServiceSettings):
         ),
     )
 
+    share: bool = Field(
+        False,
+        description=(
+            "share the sensors with all other processes of this service that have this flag: each sensor is served by "
+            "one of these processes, and by another one within 2 s after that process has ended. The processes listen "
+            "to each other's answers instead of storing them in the folder --state"
+        ),
+    )
+
     @property
     def of_each_sensor(self) -> list[Self]:
         """The settings for each of the sensors."""

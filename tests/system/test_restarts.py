@@ -12,14 +12,12 @@ from benchmarks.rig.tcp_proxy import TcpProxy
 
 from action_fusion.node import WAIT_NS
 from actum import keys
-from actum.messages import Action, Event, Message, Posture, Segment, Status
+from actum.messages import Action, Event, Message, Segment, Status
 from actum.node import SECOND_NS
 from actum.runtime import Client, Listening
 from fusion_with_short_history import HISTORY_S
 from live import Running, System, collect, wait_until
-from people import FRAME_NS, reaches
-from pose_preprocessor.node import PosePreprocessor
-from pose_preprocessor.settings import Settings as PoseSettings
+from people import marks, postures
 from scenes import acting_on, action, at
 
 PUSH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65))
@@ -42,22 +40,6 @@ def later(message: Message, segment_id: str = "later") -> Message:
     stamps = {name: getattr(message, name) + shift_ns for name in ("start_ns", "end_ns") if hasattr(message, name)}
     named = {"segment_id": segment_id} if hasattr(message, "segment_id") else {}
     return message.model_copy(update=stamps | named | {"seq": None, "stamp_ns": message.stamp_ns + shift_ns})
-
-
-def postures(from_s: float, to_s: float) -> list[Posture]:
-    """Postures of a person who reaches, thirty a second."""
-    node = PosePreprocessor(PoseSettings.defaults())
-    frames = reaches(round(to_s * SECOND_NS / FRAME_NS))
-    found = [posture for frame in frames for posture in node.handle(frame) if isinstance(posture, Posture)]
-    return [posture for posture in found if posture.stamp_ns >= from_s * SECOND_NS]
-
-
-def marks(name: str, start_s: float, end_s: float) -> list[Segment]:
-    bounds = (("start", start_s), ("end", end_s))
-    return [
-        Segment(sensor="kinect0", kind=kind, segment_id=name, stamp_ns=round(stamp_s * SECOND_NS))
-        for kind, stamp_s in bounds
-    ]
 
 
 def wait_until_heard(client: Client, *topics: keys.Topic) -> None:

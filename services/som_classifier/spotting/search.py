@@ -80,12 +80,14 @@ class Search:
 
     Attributes:
         admission: decides which of the actions found are published.
+        is_ongoing: whether an action seemed to be going on at the last frame.
     """
 
     def __init__(self, first: Posture, plan: SearchPlan) -> None:
         session = hashlib.sha256(first.session_id.encode()).hexdigest()[:SESSION_DIGITS]
         self._stream_id = f"auto-{first.agent}-{session}-{first.stamp_ns // 1000}"
         self._told = 0
+        self.is_ongoing = False
         self._begin(plan)
 
     @property
@@ -116,7 +118,9 @@ class Search:
 
     def step(self, frame: Frame) -> Spotted:
         """Search the next frame of the stream."""
-        return NOTHING if self._spotter is None else self._spotter.step(frame)
+        spotted = NOTHING if self._spotter is None else self._spotter.step(frame)
+        self.is_ongoing = spotted.ongoing is not None
+        return spotted
 
     def _begin(self, plan: SearchPlan) -> None:
         self._plan, self._spotter = plan, plan.spotter()

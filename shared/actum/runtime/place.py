@@ -108,8 +108,12 @@ class Place:
             self._undeclare(key)
 
     def lost_to(self) -> str | None:
-        """Return the instance that this one makes room for: a successor, or of two that run the first by name."""
-        for other in self._others() or ():
+        """Return the instance that this one is to make room for, None where it may go on."""
+        return self._loses_to(self._others() or ())
+
+    def _loses_to(self, others: Sequence[keys.Claim]) -> str | None:
+        """Return a successor, or of two instances that run the first by name."""
+        for other in others:
             if other.role == "successor" or (other.role == "alive" and other.instance < self._settings.instance):
                 return other.instance
         return None
@@ -169,9 +173,9 @@ class Place:
         return won
 
     def _rivals(self) -> list[keys.Claim] | None:
-        """Return the claims of running instances and candidates, not of successors; None where the query failed."""
+        """Return the claims of running instances and candidates; None where the query failed."""
         others = self._others()
-        rivals = None if others is None else [other for other in others if other.role != "successor"]
+        rivals = None if others is None else [each for each in others if each.role in ("alive", "candidate")]
         if any(rival.role == "alive" for rival in rivals or ()):
             self._last_held_s = time.monotonic()
         return rivals

@@ -2,6 +2,9 @@
 
 import logging
 import math
+import threading
+import time
+from collections import OrderedDict
 
 from actum.atomic_file import PRIVATE_FOLDER
 from actum.codec import DecodeError, Frame, decode
@@ -13,6 +16,11 @@ from actum.runtime.outbox import Outbox
 from actum.settings import ServiceSettings, SettingsError
 
 log = logging.getLogger("actum")
+
+KEPT_S = 2 * RESUMED_S
+"""How old an answer is forgotten (s): marks as old are not requested."""
+MOST_HEARD = 1024
+"""Most answers kept for one sensor: more than are given in that time."""
 
 
 def check_state_folder(settings: ServiceSettings) -> None:
@@ -31,10 +39,54 @@ def check_state_folder(settings: ServiceSettings) -> None:
         ) from None
 
 
+class HeardAnswers:
+    """The answers that processes which share a sensor have put lately, in memory; thread-safe.
+
+    It stands in place of a journal, so its names are those of `Journal`.
+
+    Attributes:
+        is_new: whether no other process was ever there.
+        unread: None, since there is no file.
+    """
+
+    unread = None
+
+    def __init__(self) -> None:
+        self._began_s = time.monotonic()
+        self._answers: OrderedDict[bytes, WrittenAnswer] = OrderedDict()
+        self._lock = threading.Lock()
+        self.is_new = True
+
+    @property
+    def answers(self) -> list[WrittenAnswer]:
+        """The answers, the oldest first."""
+        with self._lock:
+            return list(self._answers.values())
+
+    @property
+    def age_s(self) -> float:
+        """How long it has been listening (s)."""
+        return time.monotonic() - self._began_s
+
+    def add(self, frame: Frame) -> None:
+        """Keep an answer that is about to be put, or was heard, once."""
+        with self._lock:
+            self._answers.setdefault(frame.payload, WrittenAnswer(time.time_ns(), frame))
+            oldest = next(iter(self._answers.values()))
+            if oldest.age_s > KEPT_S or len(self._answers) > MOST_HEARD:
+                self._answers.popitem(last=False)
+
+    def store(self) -> None:
+        """Do nothing."""
+
+    def close(self) -> None:
+        """Do nothing: it goes on while another process serves the sensor."""
+
+
 class Resumption:
     """The journal of a node that remembers its answers."""
 
-    def __init__(self, node: Remembering, journal: Journal, counters: Counters) -> None:
+    def __init__(self, node: Remembering, journal: Journal | HeardAnswers, counters: Counters) -> None:
         self._node, self._journal, self._counters = node, journal, counters
         self._writes = True
 

@@ -51,8 +51,11 @@ class Service(ABC):
             PlaceTakenError: another instance runs and stays.
         """
         place = Place(session, self._settings, self.name)
-        if not place.claim(stop, settling_s):
-            return
+        if place.claim(stop, settling_s):
+            self.hold(place, session, stop)
+
+    def hold(self, place: Place, session: zenoh.Session, stop: threading.Event) -> None:
+        """Run at a place that this service has claimed until stopped, and leave it."""
         queryables = self._queryables(session, stop)
         given = (session, place, stop, lambda: self.is_healthy and self.is_healthy_beside(), self._store)
         name = f"{self.thread_name} reporting"

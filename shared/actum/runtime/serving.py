@@ -20,9 +20,10 @@ from actum.runtime.client import Client
 from actum.runtime.outbox import Outbox
 from actum.runtime.place import RETURNING_S, SETTLING_S, PlaceTakenError
 from actum.runtime.resuming import check_state_folder
-from actum.runtime.service import Service, SourceService
+from actum.runtime.service import SourceService
 from actum.runtime.session import RETRY_S, open_session, secret_config
-from actum.runtime.several import end_at_bugs, name_sensors, serve_all
+from actum.runtime.several import Served, end_at_bugs, name_sensors, serve_all
+from actum.runtime.sharing import SharingService
 from actum.runtime.step_service import NodeService
 from actum.runtime.stopping import end_with_parent, stop_on_signals
 from actum.settings import NodeSettings, ServiceSettings, SettingsError, complaint
@@ -92,7 +93,8 @@ class FrontService(NodeService):
 def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str] | None = None) -> None:
     """Run a node as this process's service until SIGTERM or SIGINT, set by this process's flags or given ones.
 
-    Where the settings name several sensors, there is a node for each of them, and one session.
+    Where the settings name several sensors, there is a node for each of them, and one session. Where these are shared
+    with other processes, a node works only while its sensor is this process's.
     """
 
     def of_each_sensor(settings: S) -> list[tuple[Node, S]]:
@@ -100,7 +102,12 @@ def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str]
         return [(build(own), own) for own in each]
 
     settings, nodes = configured(settings_type, of_each_sensor, flags)
-    live([NodeService(node, own) for node, own in nodes], settings)
+    shares = isinstance(settings, NodeSettings) and settings.share
+    live([_sharing(node, build, own) if shares else NodeService(node, own) for node, own in nodes], settings)
+
+
+def _sharing(node: Node, build: Callable[[S], Node], settings: S) -> SharingService:
+    return SharingService(node, lambda: build(settings), settings)
 
 
 def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
@@ -145,7 +152,7 @@ def log_level() -> str:
 
 
 def live(
-    services: Sequence[Service],
+    services: Sequence[Served],
     settings: ServiceSettings,
     beside: Callable[[], AbstractContextManager[None]] = nullcontext,
 ) -> None:
@@ -166,7 +173,7 @@ def live(
     sys.exit(1 if any(service.failed for service in services) else 0)
 
 
-def _serve(services: Sequence[Service], settings: ServiceSettings, stop: threading.Event) -> None:
+def _serve(services: Sequence[Served], settings: ServiceSettings, stop: threading.Event) -> None:
     began_s = time.monotonic()
     session = open_session(settings, stop)
     if session is None:

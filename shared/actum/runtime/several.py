@@ -2,19 +2,66 @@
 
 import logging
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Protocol
 
 import zenoh
 
 from actum.runtime.place import PlaceTakenError
-from actum.runtime.service import Service
 from actum.runtime.stopping import wait_for
 
 LOOK_S = 0.1
 """How late (s) the end of one service may be noticed."""
 
 
-def serve_all(services: Sequence[Service], session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
+class Served(Protocol):
+    """What a process runs for one sensor: a service, or one that several processes share.
+
+    Attributes:
+        is_healthy_beside: tells whether the other services of the process work.
+    """
+
+    is_healthy_beside: Callable[[], bool]
+
+    @property
+    def name(self) -> str:
+        """The service's name."""
+        ...
+
+    @property
+    def thread_name(self) -> str:
+        """How the names of its threads begin."""
+        ...
+
+    @property
+    def failed(self) -> bool:
+        """Whether a bug ended it."""
+        ...
+
+    @property
+    def has_ended(self) -> bool:
+        """Whether it no longer serves."""
+        ...
+
+    @property
+    def is_healthy(self) -> bool:
+        """Whether it works."""
+        ...
+
+    def introduce(self) -> None:
+        """Log what is read, and any problem that there is already."""
+        ...
+
+    def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
+        """Serve until stopped."""
+        ...
+
+    def end_at_bug(self, where: str, error: BaseException, stop: threading.Event) -> None:
+        """Log a bug, and stop."""
+        ...
+
+
+def serve_all(services: Sequence[Served], session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
     """Serve until all have ended: when stopped, or each when another instance takes over its sensor.
 
     A bug in one of them, or a sensor that another instance serves and keeps, ends all.
@@ -25,7 +72,7 @@ def serve_all(services: Sequence[Service], session: zenoh.Session, stop: threadi
     if len(services) == 1:
         services[0].serve(session, stop, settling_s)
         return
-    running = [_Served(service, session, settling_s) for service in services]
+    running = [_Serving(service, session, settling_s) for service in services]
     for served in running:  # all write one health file: that of the process
         served.service.is_healthy_beside = lambda: all(
             each.service.is_healthy for each in running if each.thread.is_alive()
@@ -41,10 +88,10 @@ def serve_all(services: Sequence[Service], session: zenoh.Session, stop: threadi
         raise refusal
 
 
-class _Served:
+class _Serving:
     """A service that runs in a thread of its own."""
 
-    def __init__(self, service: Service, session: zenoh.Session, settling_s: float) -> None:
+    def __init__(self, service: Served, session: zenoh.Session, settling_s: float) -> None:
         self.service, self.stop = service, threading.Event()
         self.refusal: PlaceTakenError | None = None
         self.thread = threading.Thread(target=self._serve, args=(session, settling_s), name=service.thread_name)
@@ -57,7 +104,7 @@ class _Served:
             self.refusal = error
 
 
-def end_at_bugs(services: Sequence[Service], stop: threading.Event) -> None:
+def end_at_bugs(services: Sequence[Served], stop: threading.Event) -> None:
     """Have the process end where any of its threads does by an exception: without it a service is mute or deaf."""
 
     def ended(thread: threading.ExceptHookArgs) -> None:

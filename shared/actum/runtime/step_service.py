@@ -10,7 +10,7 @@ import zenoh
 from actum.bridge import Bridge
 from actum.codec import DecodeError, decode, origin_of
 from actum.messages import Action, Event, Message
-from actum.node import TICK_NS, Node, Tick
+from actum.node import TICK_NS, Node, Remembering, Tick
 from actum.runtime.inbox import Inbox, Reach
 from actum.runtime.outbox import Outbox
 from actum.runtime.resuming import Resumption
@@ -81,15 +81,28 @@ class StepService(Service):
 
 
 class NodeService(StepService):
-    """Runs a node: gives it messages and ticks, and puts the messages that it returns."""
+    """Runs a node: gives it messages and ticks, and puts the messages that it returns.
 
-    def __init__(self, node: Node, settings: ServiceSettings) -> None:
+    Args:
+        node: the node.
+        settings: of the service.
+        resumption: by what the node goes on; None for the journal in the folder that is set, if there is one.
+    """
+
+    def __init__(self, node: Node, settings: ServiceSettings, resumption: Resumption | None = None) -> None:
         super().__init__(node, settings)
         self._node = node
-        self._resumption: Resumption | None = None
+        self._resumption = resumption
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether the node is in the middle of a segment."""
+        with self._lock:
+            return isinstance(self._node, Remembering) and self._node.is_busy
 
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
-        self._resumption = Resumption.of(self._node, self.name, self._settings, self._counters)
+        if self._resumption is None:
+            self._resumption = Resumption.of(self._node, self.name, self._settings, self._counters)
         if self._resumption is None:
             super()._work(session, outbox, stop, vacant_s)
             return

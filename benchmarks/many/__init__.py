@@ -1,0 +1,1 @@
+"""Many sensors: crowds from several of them live, and sensors shared by classifiers of which some are killed."""
