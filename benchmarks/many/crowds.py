@@ -1,28 +1,29 @@
 """Crowds before several sensors, live: latency of partial actions, what is dropped, and labels beside those offline."""
 
 import time
-from collections import Counter, defaultdict
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from threading import Thread
 
+import msgpack
 import numpy as np
 import psutil
+import zenoh
 from benchmarks.latency.running import STARTING_S
 
 from actum import keys
 from actum.codec import Frame, encode
-from actum.messages import Action, Message, Status
+from actum.messages import Message, Status
 from actum.node import Numbering
-from actum.runtime import Client
-from actum.runtime.inbox import Received
+from actum.runtime import Client, Received
 from actum.settings import NodeSettings
 from actum_command import processes
 from actum_command.supervising import Supervisor
 from som_classifier.model_loading import load_model
 
-from .scenes import Answer, answer, answers, crowd
+from .scenes import Answer, answers, crowd
 
 SENSORS = tuple(f"sensor{number}" for number in range(1, 6))
 SETTINGS = NodeSettings(connect="tcp/127.0.0.1:7467", sensor=",".join(SENSORS))
@@ -30,6 +31,14 @@ SECONDS = 30.0
 """Length of a run (s): several actions of everybody."""
 SETTLING_S = 5.0
 """How long answers may take after the last frame (s)."""
+PEOPLE = (1, 5, 10)
+"""People before each sensor."""
+HEAD = (
+    "| people | p50 (ms) | p99 (ms) | dropped or rejected | answers as offline | answered twice | processors used |\n"
+    "|---:|---:|---:|---:|---:|---:|---|"
+)
+Answers = dict[str, dict[str, Answer]]
+"""What is answered, by sensor and segment."""
 SERVICES = ("pose_preprocessor", "som_classifier")
 
 
@@ -44,62 +53,67 @@ class Watch:
         self.drops: dict[tuple[str, str], dict[str, int]] = {}
         self.rejects: dict[tuple[str, str], dict[str, int]] = {}
 
-    def hear(self, received: Received) -> None:
-        """Take one message."""
-        now_s = time.perf_counter()
+    def hear_action(self, sample: zenoh.Sample) -> None:
+        """Note how late a partial action comes, without the cost of validating it, or what a final one says."""
+        now_s, payload = time.perf_counter(), sample.payload.to_bytes()
+        fields = msgpack.unpackb(payload)
+        if not fields["final"]:
+            self.latencies_ms.append(1e3 * (now_s - self.put_s[fields["sensor"], fields["stamp_ns"]]))
+            return
+        said = self.answers[fields["sensor"]]
+        self.twice += fields["segment_id"] in said
+        said[fields["segment_id"]] = Answer(fields["action"], fields["confidence"], fields["reason"])
+
+    def hear_status(self, received: Received) -> None:
+        """Note what a service has lost so far."""
         match received.message:
-            case Action(final=True) as message:
-                self.twice += message.segment_id in self.answers[message.sensor]
-                self.answers[message.sensor][message.segment_id] = answer(message)
-            case Action() as message:
-                self.latencies_ms.append(1e3 * (now_s - self.put_s[message.sensor, message.stamp_ns]))
-            case Status() as message:
-                self.drops[message.sensor, message.service] = message.drops
-                self.rejects[message.sensor, message.service] = message.rejects
+            case Status() as status:
+                self.drops[status.sensor, status.service] = status.drops
+                self.rejects[status.sensor, status.service] = status.rejects
 
 
-def live(people: int, model: Path) -> Iterator[str]:
-    """Show `people` before five sensors to one preprocessor and one classifier; yield a row of the table."""
+def crowds(model: Path) -> Iterator[str]:
+    """Yield a table of crowds of several sizes."""
+    yield (
+        f"{len(SENSORS)} sensors at 30 frames/s for {SECONDS:.0f} s, one preprocessor and one classifier for all; each "
+        "action of everybody is marked, and the search for unmarked actions is on. Latencies are those from the put of "
+        "a skeleton to the partial action that follows from it. An answer is as offline if its action and its "
+        "confidence are those that the same steps give without any transport."
+    )
+    rows = [_row(people * len(SENSORS), *_live(people, model)) for people in PEOPLE]
+    yield "\n".join((HEAD, *rows))
+
+
+def _live(people: int, model: Path) -> tuple["Watch", Answers, dict[str, float]]:
+    """Show so many people before each sensor; return what was heard, the answers offline, and each program's cores."""
     scenes = {sensor: crowd(sensor, people, 20 * n, SECONDS) for n, sensor in enumerate(SENSORS)}
     expected = {sensor: answers(scene, load_model(model)) for sensor, scene in scenes.items()}
     encoded = {sensor: _encoded(scene) for sensor, scene in scenes.items()}
-    watch = Watch()
+    watch, first = Watch(), SETTINGS.of_each_sensor[0]
     with ExitStack() as stack:
         programs = [each for each in processes.services(SETTINGS, model, {}) if each.name in SERVICES]
-        first = SETTINGS.of_each_sensor[0]
-        supervisor = stack.enter_context(Supervisor(model.with_name("many.log")))
+        supervisor = stack.enter_context(Supervisor(model.with_name("crowds.log")))
         for program in (processes.router(first), *programs):
             supervisor.start(program)
         client = stack.enter_context(Client(first, wait_s=STARTING_S))
-        for topic in (keys.ACTION, keys.STATUS):
-            client.follow(keys.pattern(topic), watch.hear)
+        client.tap(keys.pattern(keys.ACTION), watch.hear_action)
+        client.follow(keys.pattern(keys.STATUS), watch.hear_status)
         _wait_for_all(stack)
-        began_s = time.perf_counter() + 1.0
-        putting = [  # each sensor's frames come at another time of the thirtieth of a second
-            Thread(target=_put, args=(client, sensor, frames, watch, began_s + number / (30 * len(SENSORS))))
-            for number, (sensor, frames) in enumerate(encoded.items())
-        ]
         before_s = _cpu_s(supervisor)
-        for thread in putting:
-            thread.start()
-        for thread in putting:
-            thread.join()
+        _put_all(client, encoded, watch)
         time.sleep(SETTLING_S)
         cores = {name: (after_s - before_s[name]) / SECONDS for name, after_s in _cpu_s(supervisor).items()}
-    yield _row(people, watch, expected, cores)
+    return watch, expected, cores
 
 
-def _row(people: int, watch: Watch, expected: dict[str, dict[str, Answer]], cores: dict[str, float]) -> str:
+def _row(people: int, watch: Watch, expected: Answers, cores: dict[str, float]) -> str:
     p50, p99 = np.percentile(watch.latencies_ms, [50, 99])
     asked = [(sensor, name) for sensor, each in expected.items() for name in each]
     alike = sum(watch.answers[sensor].get(name) == expected[sensor][name] for sensor, name in asked)
-    lost = Counter[str]()
-    for counts in (*watch.drops.values(), *watch.rejects.values()):
-        lost.update(counts)
-    return (
-        f"| {people * len(SENSORS)} | {p50:.1f} | {p99:.1f} | {len(watch.latencies_ms)} | {sum(lost.values())} | "
-        f"{alike} of {len(asked)} | {watch.twice} | {', '.join(f'{name} {share:.2f}' for name, share in cores.items())} |"
-    )
+    lost = sum(sum(counts.values()) for counts in (*watch.drops.values(), *watch.rejects.values()))
+    used = ", ".join(f"{name} {share:.2f}" for name, share in cores.items())
+    cells = (people, f"{p50:.1f}", f"{p99:.1f}", lost, f"{alike} of {len(asked)}", watch.twice, used)
+    return f"| {' | '.join(map(str, cells))} |"
 
 
 def _cpu_s(supervisor: Supervisor) -> dict[str, float]:
@@ -113,6 +127,19 @@ def _wait_for_all(stack: ExitStack) -> None:
         client = stack.enter_context(Client(own, wait_s=STARTING_S))
         for topic in (keys.SKELETON, keys.SEGMENT):
             assert client.wait_for_subscriber(topic, STARTING_S), f"nobody reads {topic.leaf} of {own.sensor}"
+
+
+def _put_all(client: Client, scenes: dict[str, list[tuple[int, Frame]]], watch: Watch) -> None:
+    """Put all scenes; each sensor's frames come at another time of the thirtieth of a second."""
+    began_s = time.perf_counter() + 1.0
+    putting = [
+        Thread(target=_put, args=(client, sensor, frames, watch, began_s + number / (30 * len(SENSORS))))
+        for number, (sensor, frames) in enumerate(scenes.items())
+    ]
+    for thread in putting:
+        thread.start()
+    for thread in putting:
+        thread.join()
 
 
 def _encoded(scene: Sequence[Message]) -> list[tuple[int, Frame]]:

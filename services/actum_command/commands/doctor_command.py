@@ -31,6 +31,8 @@ def doctor() -> None:
     with connect() as client:
         found = examine(client)
     show(found.findings, console)
+    for fact in found.facts:
+        console.print(fact, markup=False, soft_wrap=True)
     for remark in (*(remark for finding in found.findings for remark in finding.remarks), *found.remarks):
         say(remark, style="yellow")
     own = [problem for finding in found.findings for problem in finding.problems]

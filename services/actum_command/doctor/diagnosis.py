@@ -23,11 +23,12 @@ TOLD_S = 0.1
 
 @dataclass(frozen=True)
 class Examination:
-    """What was found: each service by itself, problems of the whole, and what is no problem."""
+    """What was found: each service by itself, problems of the whole, what is no problem, and plain facts."""
 
     findings: list[Finding]
     problems: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    facts: tuple[str, ...] = ()
 
 
 def examine(client: Client) -> Examination:
@@ -39,7 +40,16 @@ def examine(client: Client) -> Examination:
     names = [*EXPECTED, *sorted({*heard.tokens, *heard.statuses} - set(EXPECTED))]
     problems = (*partly_denied(heard), *stream_checks.problems(heard.infos, heard.statuses, heard.streams))
     clocks = clock_remarks(clock_offsets(heard.answers))
-    return Examination([finding(name, heard) for name in names], problems, tuple(clocks))
+    facts = (*stream_checks.hops(heard.streams), *who_serves_whom(heard))
+    return Examination([finding(name, heard) for name in names], problems, tuple(clocks), facts)
+
+
+def who_serves_whom(heard: Heard) -> Iterator[str]:
+    """Yield a line for each service that several processes share, and each sensor."""
+    for (service, sensor), shared in sorted(heard.shared.items()):
+        others = sorted(set(shared.members) - set(shared.serving))
+        standing_by = f"; standing by: {', '.join(others)}" if others else ""
+        yield f"{service} of {sensor}: served by {', '.join(shared.serving) or 'nobody yet'}{standing_by}"
 
 
 def everything_denied(heard: Heard, client: Client) -> str | None:

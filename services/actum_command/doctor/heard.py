@@ -2,24 +2,21 @@
 
 import hashlib
 import socket
+import threading
 import time
 from collections import defaultdict
 from dataclasses import dataclass, field
 
 from actum import keys
 from actum.keys import Topic
-from actum.messages import Image, Info, Message, Skeleton, Status
+from actum.messages import Action, Image, Info, Message, Skeleton, Status
 from actum.node import SECOND_NS
-from actum.runtime import Answer, Client
+from actum.runtime import Answer, Client, Received
 
 STATUS_S = 2.5  # a little more than two of the reports that every service sends each second
 
 ROUNDS = 5
 """Questions to each service: the one that was answered fastest counts."""
-POLL_S = 0.02
-"""Interval (s) at which messages are fetched: short beside that of frames."""
-IMAGES_HELD = 64
-"""Images that may wait to be looked at: several seconds of them would fill the memory."""
 FROZEN_NS = SECOND_NS
 """How long (ns, by arrival) frames may be alike: noise changes every real one."""
 FEWEST = 5
@@ -71,6 +68,19 @@ class Watched:
         return len(self.arrivals_ns) >= FEWEST and self.arrivals_ns[-1] - self.arrivals_ns[0] >= FROZEN_NS
 
 
+@dataclass
+class Shared:
+    """A service of a sensor that several processes share.
+
+    Attributes:
+        serving: the instances that run; one, unless they change just now.
+        members: all instances that share the sensor.
+    """
+
+    serving: list[str] = field(default_factory=list)
+    members: list[str] = field(default_factory=list)
+
+
 @dataclass(frozen=True)
 class Heard:
     """What was heard of a sensor.
@@ -79,13 +89,15 @@ class Heard:
         tokens: the instances that are alive, by service.
         answers: what services answered, several times each.
         statuses: the statuses of each service, in the order they came.
-        streams: skeletons, postures and objects, and images where the sensor is on this host.
+        streams: skeletons, postures, objects and partial actions, and images where the sensor is on this host.
+        shared: who serves whom, by service and sensor, of all sensors.
     """
 
     tokens: dict[str, list[str]]
     answers: list[Answer]
     statuses: dict[str, list[Status]]
     streams: dict[Topic, Watched]
+    shared: dict[tuple[str, str], Shared] = field(default_factory=dict)
 
     @property
     def infos(self) -> list[Info]:
@@ -100,7 +112,7 @@ def hear(client: Client) -> Heard:
     """Ask all services, and listen to them for `STATUS_S`."""
     answers = [answer for _ in range(ROUNDS) for answer in client.answers()]
     hosts = {answer.info.host for answer in answers if answer.info.service == "sensor_gateway"}
-    topics = [keys.SKELETON, keys.POSTURE, keys.OBJECTS]
+    topics = [keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.ACTION]
     if socket.gethostname() in hosts:
         topics.append(keys.COLOR)  # elsewhere they would cross the network for nothing but this
     statuses, streams = _listened(client, topics)
@@ -108,24 +120,41 @@ def hear(client: Client) -> Heard:
     for key in client.alive():
         service, instance = key.split("/")[-2:]
         tokens[service].append(instance)
-    return Heard(dict(tokens), answers, statuses, streams)
+    return Heard(dict(tokens), answers, statuses, streams, shared(client.sharing()))
+
+
+def shared(tokens: list[str]) -> dict[tuple[str, str], Shared]:
+    """Return who serves whom by the liveliness tokens of all sensors; services that nobody shares are left out."""
+    found: defaultdict[tuple[str, str], Shared] = defaultdict(Shared)
+    for token in tokens:
+        claim, (sensor, _, service) = keys.claim_of(token), token.split("/")[1:4]
+        if claim is not None:
+            each = found[service, sensor]
+            (each.members if claim.role == "member" else each.serving).append(claim.instance)
+    return {name: each for name, each in found.items() if each.members}
 
 
 def _listened(client: Client, topics: list[Topic]) -> tuple[dict[str, list[Status]], dict[Topic, Watched]]:
     """Return the statuses that come within `STATUS_S`, by service, and what comes on some topics."""
-    rings = {topic: {"ring": IMAGES_HELD} if topic is keys.COLOR else {} for topic in (keys.STATUS, *topics)}
-    listening = [client.listen(keys.pattern(topic, client.sensor), **ring) for topic, ring in rings.items()]
     statuses: defaultdict[str, list[Status]] = defaultdict(list)
     streams = {topic: Watched() for topic in (*topics, keys.COLOR)}
-    deadline_s = time.monotonic() + STATUS_S
-    while time.monotonic() < deadline_s:
-        for each in listening:
-            while (received := each.receive()) is not None:
-                if isinstance(received.message, Status):
-                    statuses[received.message.service].append(received.message)
-                elif received.message is not None:
-                    streams[keys.address_of(received.message).topic].receive(received.message, time.monotonic_ns())
-        time.sleep(POLL_S)
+    lock, is_over = threading.Lock(), threading.Event()
+
+    def take(received: Received) -> None:
+        arrival_ns, message = time.monotonic_ns(), received.message
+        with lock:
+            if message is None or is_over.is_set():
+                return
+            if isinstance(message, Status):
+                statuses[message.service].append(message)
+            elif not (isinstance(message, Action) and message.final):
+                streams[keys.address_of(message).topic].receive(message, arrival_ns)
+
+    for topic in (keys.STATUS, *topics):
+        client.follow(keys.pattern(topic, client.sensor), take)
+    time.sleep(STATUS_S)
+    with lock:
+        is_over.set()
     return dict(statuses), streams
 
 

@@ -24,8 +24,8 @@ from actum.states import State
 
 log = logging.getLogger("actum")
 
-LATENCIES = 1000
-"""Latencies kept for the percentiles: half a minute of one stream."""
+LATENCIES = 1800
+"""Latencies kept for the percentiles: a minute of one person's stream."""
 MOST_KEYS = 256
 """Most keys that are counted: the one silent for longest, such as that of an agent who left, makes room."""
 MOST_ORIGINS = 16

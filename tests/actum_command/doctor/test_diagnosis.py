@@ -1,12 +1,13 @@
 """What `actum doctor` takes for wrong, and that it shows what services say whatever they say."""
 
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 from rich.console import Console
 from typer.testing import CliRunner
 
-from actum import __version__
+from actum import __version__, keys
 from actum.codec import schema_name
 from actum.messages import MESSAGES, Info, Message, Status
 from actum.runtime import Answer, Received
@@ -52,14 +53,6 @@ def info(service: str, version: str = __version__, instance: str = "a", source: 
     )
 
 
-class Listened:
-    def __init__(self, messages: list[Message]) -> None:
-        self._messages = messages
-
-    def receive(self) -> Received | None:
-        return Received("", self._messages.pop(0), None, 0) if self._messages else None
-
-
 class System:
     """All services, alive and well but for what a test changes about one."""
 
@@ -78,8 +71,12 @@ class System:
 
     def __exit__(self, *_: object) -> None: ...
 
-    def listen(self, pattern: str, **_ring: int) -> Listened:
-        return Listened(self._statuses if "status" in pattern else [])
+    def follow(self, pattern: str, take: Callable[[Received], None]) -> None:
+        for message in self._statuses if "status" in pattern else []:
+            take(Received(keys.key_of(message), message, None, 0))
+
+    def sharing(self) -> list[str]:
+        return []
 
     def alive(self) -> list[str]:
         names = [(name, "a") for name in EXPECTED] + ([self.also] if self.also else [])
@@ -171,9 +168,9 @@ class Sensorless(System):
     def alive(self) -> list[str]:
         return [key for key in super().alive() if "sensor_gateway" not in key]
 
-    def listen(self, pattern: str, **_ring: int) -> Listened:
+    def follow(self, pattern: str, take: Callable[[Received], None]) -> None:
         self._statuses = [each for each in self._statuses if getattr(each, "service", "") != "sensor_gateway"]
-        return super().listen(pattern)
+        super().follow(pattern, take)
 
 
 def test_where_there_is_no_sensor_both_programs_that_can_be_one_are_named() -> None:
