@@ -25,7 +25,7 @@ from actum.runtime.session import RETRY_S, open_session, secret_config
 from actum.runtime.several import end_at_bugs, name_sensors, serve_all
 from actum.runtime.step_service import NodeService
 from actum.runtime.stopping import end_with_parent, stop_on_signals
-from actum.settings import NodeSettings, ServiceSettings, SettingsError, complaint
+from actum.settings import ServiceSettings, SettingsError, complaint
 
 log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
@@ -96,8 +96,7 @@ def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str]
     """
 
     def of_each_sensor(settings: S) -> list[tuple[Node, S]]:
-        each = settings.of_each_sensor if isinstance(settings, NodeSettings) else [settings]
-        return [(build(own), own) for own in each]
+        return [(build(own), own) for own in settings.of_each_sensor]
 
     settings, nodes = configured(settings_type, of_each_sensor, flags)
     live([NodeService(node, own) for node, own in nodes], settings)
