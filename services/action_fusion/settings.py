@@ -2,10 +2,10 @@
 
 import re
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from actum import geometry
 from actum.arrays import Array
@@ -144,6 +144,15 @@ class Settings(NodeSettings):
         max_length=200,
         description="name of the coordinate system to which --world-from-camera transforms, as it appears in events",
     )
+
+    @model_validator(mode="after")
+    def _one_camera(self) -> Self:
+        if self.world_from_camera is not None and "," in self.sensor:
+            raise ValueError(
+                f"world-from-camera is the place of one camera, but this process serves the sensors {self.sensor}: "
+                "start an action_fusion for each sensor, with its own world-from-camera"
+            )
+        return self
 
     @property
     def fixed_from_camera(self) -> Array | None:

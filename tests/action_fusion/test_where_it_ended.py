@@ -125,6 +125,13 @@ def world_from_camera(turn_rad: float, tilt_rad: float, place: tuple[float, floa
 angle = st.floats(-3.1, 3.1)
 
 
+def test_one_place_of_a_camera_is_not_taken_for_that_of_several() -> None:
+    identity = geometry.flat(np.eye(4))
+    assert Settings(sensor="left", world_from_camera=identity).fixed_from_camera is not None
+    with pytest.raises(ValidationError, match="start an action_fusion for each sensor"):
+        Settings(sensor="left,right", world_from_camera=identity)
+
+
 @settings(max_examples=20)  # each one runs a whole scene
 @given(angle, angle, st.tuples(*[st.floats(-5.0, 5.0)] * 3))
 def test_the_fixed_frame_is_where_the_setting_has_it(turn: float, tilt: float, place: Place) -> None:
