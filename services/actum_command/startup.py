@@ -3,7 +3,6 @@
 import socket
 import threading
 import time
-from pathlib import Path
 
 from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings, SettingsError, host_and_port
@@ -25,6 +24,15 @@ FILES_ELSEWHERE = {
 }
 """The sources that play no file, each with how a file is named instead."""
 
+OWN_SOURCE = {"camera": "camera", "recording": "path", "realsense": "path", "openni2": "path"}
+"""The setting that names what a sensor shows, by source: several sensors have one each."""
+
+DEPTH_CAMERAS = (
+    ". For depth cameras use --source none, and start a gateway for each sensor on a host of its own, because each "
+    "gateway opens the first depth camera that it finds"
+)
+"""What to do with several depth cameras instead of their recordings."""
+
 WITHOUT_CAMERA = ("simulator", "recording")
 """The sources that have no camera to choose."""
 
@@ -42,13 +50,15 @@ FOUND = {
 """How actions are found, by the setting `segments`."""
 
 
-def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
+def chosen_source(named: str | None, given: Given) -> str:
     """Return the named source; where none is named, the camera if one is given, else the simulator.
 
     Raises:
         SettingsError: it does not start the service that a given setting is for, or plays no file though one is named.
     """
     source = named or ("camera" if "camera" in given else "simulator")
+    if "path" in given and source in FILES_ELSEWHERE:
+        raise SettingsError(f"--source {source} takes no file, so leave out --path: {FILES_ELSEWHERE[source]}")
     if "camera" in given and source in WITHOUT_CAMERA:
         raise SettingsError(f"--source {source} uses no camera: leave out --camera, or use --source camera")
     sensor = SENSORS.get(source, "sensor_gateway")
@@ -60,10 +70,24 @@ def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
         raise SettingsError(
             f"{flag_of(name)} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
         )
-    if path is not None and source in FILES_ELSEWHERE:
-        remedy = FILES_ELSEWHERE[source]
-        raise SettingsError(f"--source {source} takes no file: to play {path}, {remedy}")
     return source
+
+
+def refuse_shared_source(source: str, given: Given, settings: ServiceSettings) -> None:
+    """Check that each of several sensors has a camera or recording of its own.
+
+    Raises:
+        SettingsError: there are more of them than sensors, or fewer.
+    """
+    count, named = len(settings.of_each_sensor), given.get(OWN_SOURCE.get(source, ""), [])
+    if count == 1 or source not in OWN_SOURCE or not isinstance(named, list) or len(named) == count:
+        return
+    flag = flag_of(OWN_SOURCE[source])
+    depth = "" if OWN_SOURCE[source] == "camera" or source == "recording" else DEPTH_CAMERAS
+    raise SettingsError(
+        f"--source {source} for {count} sensors needs {flag} {count} times, but {flag} is given {len(named)} times: "
+        f"give it once for each sensor, in the order of the sensors{depth}"
+    )
 
 
 def refuse_marks(marked: bool, source: str, segments: str) -> None:
