@@ -81,8 +81,7 @@ def with_page(
         replace(program, environment={**program.environment, **maps}) if program.name == "som_classifier" else program
         for program in programs
     ]
-    ports = counted_on(given, PAGE, "page_port", settings)
-    return [*showing, *of_each_sensor(settings, PAGE, ports, page)]
+    return [*showing, *of_each_sensor(settings, PAGE, given, page)]
 
 
 def common(settings: ServiceSettings) -> dict[str, str]:

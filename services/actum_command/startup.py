@@ -3,9 +3,12 @@
 import socket
 import threading
 import time
+from contextlib import ExitStack
+from importlib.util import find_spec
 
 from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings, SettingsError, host_and_port
+from actum_command.dealing import counted_on
 from actum_command.model_in_use import NO_MODEL, ModelInUse, lack_of_file
 from actum_command.processes import PAGE, SERVICES
 from actum_command.service_settings import DECLARED, TRAINER, Given, flag_of, service_of
@@ -38,6 +41,9 @@ WITHOUT_CAMERA = ("simulator", "recording")
 
 SENSORS = {"none": None, "simulator": "scene_simulator"}
 """The service that puts the sensor's streams, by source, where it is not the sensor gateway."""
+
+LOCAL = "127.0.0.1"
+"""Address at which free ports are looked for: pages listen on it by default."""
 
 SCENE_MARKS = "the simulated scene marks its own actions, as a switch would"
 """How actions are found where the simulated scene marks them."""
@@ -88,6 +94,25 @@ def refuse_shared_source(source: str, given: Given, settings: ServiceSettings) -
         f"--source {source} for {count} sensors needs {flag} {count} times, but {flag} is given {len(named)} times: "
         f"give it once for each sensor, in the order of the sensors{depth}"
     )
+
+
+def with_page_ports(given: Given, settings: ServiceSettings) -> Given:
+    """Return the given settings with a port for the page of each of several sensors, in their order.
+
+    The first port is the one that is set, and the others follow it. If none is set, the first free ports are taken.
+
+    Raises:
+        SettingsError: there are too few free ports.
+        ValidationError: a setting of the page cannot be used.
+    """
+    count, ports = len(settings.of_each_sensor), counted_on(given, PAGE, "page_port", settings)
+    if count == 1 or "page_port" in ports or find_spec("uvicorn") is None:
+        return ports
+    from web_dashboard.server import bound_socket  # imports uvicorn, which the command line alone does without
+
+    with ExitStack() as held:  # all at once, so that no port is found twice
+        found = [held.enter_context(bound_socket(LOCAL, None)) for _ in range(count)]
+        return {**given, "page_port": [str(each.getsockname()[1]) for each in found]}
 
 
 def refuse_marks(marked: bool, source: str, segments: str) -> None:

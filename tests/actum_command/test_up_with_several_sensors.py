@@ -9,6 +9,7 @@ from actum_command import processes
 from actum_command.service_settings import TRAINER
 from actum_command.supervising import Program
 from command_lines import invoke, printed
+from web_dashboard.server import bound_socket
 
 SENSORS = ("--sensors", "left,right")
 SHARED = (*processes.SERVICES, TRAINER)
@@ -115,6 +116,14 @@ def test_pages_have_a_port_each(given: tuple[str, ...], ports: tuple[str, str], 
     assert arguments_of(started, processes.PAGE) == {
         sensor: [f"--page-port={port}"] for sensor, port in zip(("left", "right"), ports, strict=True)
     }
+
+
+def test_pages_have_free_ports_in_the_order_of_the_sensors_where_none_is_named(started: list[Program]) -> None:
+    with bound_socket("127.0.0.1", None) as taken:
+        printed("up", *SENSORS)
+        ports = [int(flag.removeprefix("--page-port=")) for [flag] in arguments_of(started, processes.PAGE).values()]
+        assert ports == sorted({*ports} - {taken.getsockname()[1]})
+    assert [*arguments_of(started, processes.PAGE)] == ["left", "right"]
 
 
 def test_a_port_of_the_environment_is_the_first_pages(started: list[Program], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -28,6 +28,7 @@ from actum_command.startup import (
     segments_of,
     source_of,
     wait_for_router,
+    with_page_ports,
 )
 from actum_command.supervising import Program, Supervisor, UnusableError
 from ros2_bridge.settings import Settings as BridgeSettings
@@ -149,7 +150,7 @@ def up(
             say(_greeting(here))
             _introduce(chosen, segments, marked)
             if page:
-                programs = processes.with_page(here, programs, given)
+                programs = processes.with_page(here, programs, with_page_ports(given, here))
                 if programs[-1].module != processes.PAGE:
                     say(f"no web page: {adding('web-dashboard')}", style="yellow")
             run(here, programs, chosen)
