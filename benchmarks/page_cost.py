@@ -64,7 +64,7 @@ def live(folder: Path) -> Iterator[tuple[Client, str]]:
     with Supervisor(folder / "log") as supervisor:
         supervisor.start(processes.router(SETTINGS))
         with Client(SETTINGS, wait_s=30.0) as client:
-            system = processes.system(SETTINGS, "simulator", None, ModelInUse(model), SCENE)
+            system = processes.system(SETTINGS, "simulator", ModelInUse(model), SCENE)
             for program in processes.with_page(SETTINGS, [*system, processes.scene(SETTINGS)]):
                 supervisor.start(program)
             while not (pages := [info.page for info in client.infos() if info.page]):

@@ -97,7 +97,7 @@ def live() -> Iterator[tuple[Client, str]]:
         given: Given = {"driven": True, "segments": ["auto"], "trainer_data": [folder]}
         supervisor.start(processes.router(settings))
         with Client(settings, wait_s=60.0) as client:
-            system = processes.system(settings, "simulator", None, ModelInUse(taught_model(given)), given)
+            system = processes.system(settings, "simulator", ModelInUse(taught_model(given)), given)
             for program in processes.with_page(settings, system):
                 supervisor.start(program)
             infos: dict[str, Info] = {}

@@ -64,7 +64,7 @@ def live_page(model: Path, given: Given, marked: bool) -> Iterator[str]:
     with Supervisor(Path("/dev/null")) as supervisor:
         supervisor.start(processes.router(here))
         with Client(here, wait_s=30.0) as client:
-            system = processes.system(here, "simulator", None, ModelInUse(model), given)
+            system = processes.system(here, "simulator", ModelInUse(model), given)
             system += [processes.scene(here)] if marked else []
             for program in processes.with_page(here, system, given):
                 supervisor.start(program)

@@ -11,7 +11,7 @@ from actum.runtime import Client
 from actum.settings import ServiceSettings, host_and_port
 from actum_command.processes import simulated_objects
 from actum_deployer.deployment import Deployment, hosts_of
-from actum_deployer.roles import PEOPLES, ROLES, Role
+from actum_deployer.roles import PEOPLES, ROLES, Role, identity
 from actum_deployer.writing import write_deployment
 from live import PATIENCE_S, Running, free_endpoint, started, wait_until
 
@@ -49,9 +49,9 @@ class Deployed:
         return Client(self.settings(identity, host, sensor), wait_s=wait_s)
 
     def start(self, module: str, host: str, *arguments: str, sensor: str = "kinect0") -> Running:
-        """Start a service with the credentials of its role."""
+        """Start a service with the credentials of its role, for a sensor or for several, such as `left,right`."""
         role: Role = BY_SERVICE[MODULES.get(module, module)]
-        return self._start(module, self.environment(f"{role.name}.{sensor}", host, sensor), "-m", module, *arguments)
+        return self._start(module, self.environment(identity(role, sensor), host, sensor), "-m", module, *arguments)
 
     def start_router(self, host: str) -> Running:
         folder = self.root / host

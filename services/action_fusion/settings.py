@@ -2,14 +2,14 @@
 
 import re
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 import numpy as np
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, model_validator
 
 from actum import geometry
 from actum.arrays import Array
-from actum.settings import NodeSettings
+from actum.settings import SharedSettings
 
 REMEDY = (
     "give the 16 numbers of a 4x4 matrix, row by row, in metres, or the name of a file that contains only these numbers"
@@ -20,6 +20,9 @@ MOST_CHARACTERS = 10_000
 FURTHEST_M = 1e6
 """Largest translation in metres: more is a mistake in the unit."""
 
+SENSOR = "{sensor}"
+"""Stands for the sensor in the name of a file, which is another one for each sensor."""
+
 SEPARATORS = re.compile(r"[\s,;\[\]]+")
 """Separators between numbers, in lists as NumPy, JSON and MATLAB write them."""
 
@@ -27,11 +30,13 @@ SEPARATORS = re.compile(r"[\s,;\[\]]+")
 def _transform_as_text(value: object) -> str | None:
     """Write a rigid transform as its 16 numbers; the value is a list of them, text that lists them, or a file's name.
 
+    A name with `SENSOR` in it stays as it is until the sensor is known.
+
     Raises:
         ValueError: the value is no rigid transform, or the file cannot be read.
     """
-    if value is None:
-        return None
+    if value is None or (isinstance(value, str) and SENSOR in value):
+        return value
     text = value if isinstance(value, str) else str(value)
     numbers = _numbers(text)
     if numbers is None:
@@ -44,6 +49,15 @@ def _transform_as_text(value: object) -> str | None:
             "mirroring, a position in metres, and 0 0 0 1 as the last row"
         )
     return " ".join(map(repr, numbers))
+
+
+def _of_sensor(transform: str | None, sensor: str) -> str | None:
+    """Write the transform of one sensor's camera as its 16 numbers.
+
+    Raises:
+        ValueError: there is none in the file of that sensor.
+    """
+    return None if transform is None else _transform_as_text(transform.replace(SENSOR, sensor))
 
 
 def _numbers(text: str) -> list[float] | None:
@@ -62,7 +76,7 @@ def _content(name: str) -> str:
         raise ValueError(f"{name!r} is neither a list of numbers nor a readable file ({error}): {REMEDY}") from None
 
 
-class Settings(NodeSettings):
+class Settings(SharedSettings):
     """Settings of the fusion, besides those of every service."""
 
     measure: Literal["joint", "proximity"] = Field(
@@ -134,8 +148,9 @@ class Settings(NodeSettings):
         None,
         description=(
             "transform from the coordinates of the camera to those of a room or robot: the 16 numbers of a 4 x 4 "
-            "matrix, row by row, lengths in metres, or a file with these numbers. Events then give object poses in "
-            "both coordinate systems. Default: events give object poses in camera coordinates only"
+            "matrix, row by row, lengths in metres, or a file with these numbers. For several sensors, write {sensor} "
+            "in place of the sensor's name in the name of the file, such as world-{sensor}.txt. Events then give "
+            "object poses in both coordinate systems. Default: events give object poses in camera coordinates only"
         ),
     )
     world_frame: str = Field(
@@ -144,6 +159,33 @@ class Settings(NodeSettings):
         max_length=200,
         description="name of the coordinate system to which --world-from-camera transforms, as it appears in events",
     )
+
+    @model_validator(mode="after")
+    def _of_one_camera(self) -> Self:
+        transform = self.world_from_camera
+        if "," not in self.sensor:
+            self.world_from_camera = _of_sensor(transform, self.sensor)
+        elif transform is not None and SENSOR not in transform:
+            raise ValueError(
+                f"world-from-camera is the transform of one camera, but this process serves the sensors {self.sensor}: "
+                f"store the transform of each camera in a file, and name the files with {SENSOR} in place of the "
+                f"sensor's name, such as world-{SENSOR}.txt"
+            )
+        return self
+
+    @property
+    def of_each_sensor(self) -> list[Self]:
+        """The settings for each of the sensors, with the transform of its own camera.
+
+        Raises:
+            ValueError: the file of a sensor holds no transform.
+        """
+        each = super().of_each_sensor
+        transforms = [_of_sensor(own.world_from_camera, own.sensor) for own in each]
+        return [
+            own.model_copy(update={"world_from_camera": transform})
+            for own, transform in zip(each, transforms, strict=True)
+        ]
 
     @property
     def fixed_from_camera(self) -> Array | None:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from actum import __version__
 from actum.runtime import end_with_parent, needs_extra
+from actum.settings import NodeSettings
 
 with needs_extra("actum-command"):
     import typer
@@ -71,7 +72,7 @@ def _add_picture_commands() -> None:
 
 
 app.command("demo")(with_router_flags(demo_command.demo))
-app.command("up")(with_router_flags(system_commands.up))
+app.command("up")(with_router_flags(system_commands.up, NodeSettings))
 app.command("router")(system_commands.router)
 app.add_typer(segment_commands.app, name="segment")
 app.command("record")(with_router_flags(recording_commands.record))
@@ -91,7 +92,7 @@ app.command("view")(with_router_flags(view_command.view))
 app.command("foxglove")(with_router_flags(foxglove_commands.foxglove))
 app.command("export")(foxglove_commands.export)
 app.add_typer(deploy_commands.app, name="deploy")
-app.command("doctor")(with_router_flags(doctor_command.doctor))
+app.command("doctor")(with_router_flags(doctor_command.doctor, NodeSettings))
 
 
 def main() -> None:

@@ -2,13 +2,14 @@
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 
 from actum.settings import PROCESS_ENVIRONMENT, ServiceSettings
+from actum_command.dealing import counted_on, dealt
 from actum_command.model_in_use import ModelInUse
 from actum_command.service_settings import TRAINER, Given, arguments_of
 from actum_command.supervising import Program
@@ -18,27 +19,58 @@ from scene_simulator.parameters import load_parameters
 SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
 """The services behind the sensor, in the order of the stream."""
 
+GATEWAY, SCENE = "sensor_gateway", "scene_simulator"
+"""The services that are the source of a sensor: cameras and recordings, and the simulated scene."""
+
 PAGE = "web_dashboard"
-"""The service that shows all of it to browsers."""
+"""The service that shows all of one sensor to browsers."""
 
 
-def system(settings: ServiceSettings, source: str, path: Path | None, model: ModelInUse, given: Given) -> list[Program]:
-    """Return all programs of a system but its router: the four services, the trainer, and the sensor that is named."""
+def system(settings: ServiceSettings, source: str, model: ModelInUse, given: Given) -> list[Program]:
+    """Return all programs of a system but its router: the four services, the trainer, and the source of each sensor.
+
+    The services and the trainer are one process each, however many sensors the settings name.
+    """
     own_scene = "scene" in given or TrackerSettings().scene is not None
     objects = {} if own_scene or source != "simulator" else simulated_objects()
-    programs = [*services(settings, model.file, objects, given), trainer(settings, model, given)]
+    serving = [*services(settings, model.file, objects, given), trainer(settings, model, given)]
+    return [*serving, *sources(settings, source, given)]
+
+
+def sources(settings: ServiceSettings, source: str, given: Given) -> list[Program]:
+    """Return the program that is the source of each sensor; none where other programs are.
+
+    Simulated scenes of several sensors differ in their seeds.
+    """
+    if source == "none":
+        return []
     if source == "simulator":
-        programs.append(simulator(settings, arguments_of("scene_simulator", given)))
-    elif source != "none":
-        play = ["--path", str(path)] if path else []
-        programs.append(gateway(settings, ["--source", source, *play, *arguments_of("sensor_gateway", given)]))
-    return programs
+        scenes = counted_on(given, SCENE, "seed", settings)
+        return of_each_sensor(settings, SCENE, scenes, simulator)
+    return of_each_sensor(settings, GATEWAY, given, lambda own, its: gateway(own, ["--source", source, *its]))
+
+
+def of_each_sensor(
+    settings: ServiceSettings,
+    service: str,
+    given: Given,
+    program_of: Callable[[ServiceSettings, Sequence[str]], Program],
+) -> list[Program]:
+    """Return a program for each sensor, made from its settings and the flags of a service.
+
+    Where there are several sensors, the name of each program ends in that of its sensor.
+    """
+    flags = [arguments_of(service, its) for its in dealt(given, service, settings)]
+    programs = [program_of(own, its) for own, its in zip(settings.of_each_sensor, flags, strict=True)]
+    if len(programs) == 1:
+        return programs
+    return [replace(program, name=f"{program.name}-{program.environment['ACTUM_SENSOR']}") for program in programs]
 
 
 def with_page(
     settings: ServiceSettings, programs: Sequence[Program], given: Given = MappingProxyType({})
 ) -> list[Program]:
-    """Return programs with the page beside them, and have the classifier put the maps that it shows.
+    """Return programs with the page of each sensor beside them, and have the classifier put the maps that it shows.
 
     Where the page's dependencies are not installed they are returned as they are.
     """
@@ -49,7 +81,7 @@ def with_page(
         replace(program, environment={**program.environment, **maps}) if program.name == "som_classifier" else program
         for program in programs
     ]
-    return [*showing, Program(PAGE, PAGE, arguments_of(PAGE, given), common(settings))]
+    return [*showing, *of_each_sensor(settings, PAGE, given, page)]
 
 
 def common(settings: ServiceSettings) -> dict[str, str]:
@@ -59,7 +91,8 @@ def common(settings: ServiceSettings) -> dict[str, str]:
 
 def router(settings: ServiceSettings) -> Program:
     """Return the program of the embedded router, which listens where the others connect."""
-    return Program("router", "actum_command", ["router", "--listen", settings.connect], common(settings))
+    own = settings.of_each_sensor[0]  # it serves any sensor, but its settings name one
+    return Program("router", "actum_command", ["router", "--listen", settings.connect], common(own))
 
 
 def simulated_objects() -> dict[str, str]:
@@ -92,14 +125,24 @@ def trainer(settings: ServiceSettings, model: ModelInUse, given: Given) -> Progr
 
 def gateway(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
     """Return the program of the sensor gateway with its arguments."""
-    return Program("sensor_gateway", "sensor_gateway", arguments, common(settings))
+    return Program(GATEWAY, GATEWAY, arguments, common(settings))
 
 
 def simulator(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
     """Return the program of the simulated scene, which replaces the sensor gateway."""
-    return Program("scene_simulator", "scene_simulator", arguments, common(settings))
+    return Program(SCENE, SCENE, arguments, common(settings))
+
+
+def page(settings: ServiceSettings, arguments: Sequence[str]) -> Program:
+    """Return the program of the page of one sensor."""
+    return Program(PAGE, PAGE, arguments, common(settings))
+
+
+def scenes(settings: ServiceSettings) -> list[Program]:
+    """Return the programs of the clients that put the marks of each sensor's simulated scene."""
+    return of_each_sensor(settings, SCENE, {}, lambda own, _: scene(own))
 
 
 def scene(settings: ServiceSettings) -> Program:
-    """Return the program of the client that puts the simulated scene's marks."""
+    """Return the program of the client that puts the marks of one sensor's simulated scene."""
     return Program("scene", "actum_command", ["scene"], common(settings))

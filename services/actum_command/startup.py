@@ -3,10 +3,12 @@
 import socket
 import threading
 import time
-from pathlib import Path
+from contextlib import ExitStack
+from importlib.util import find_spec
 
 from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings, SettingsError, host_and_port
+from actum_command.dealing import counted_on
 from actum_command.model_in_use import NO_MODEL, ModelInUse, lack_of_file
 from actum_command.processes import PAGE, SERVICES
 from actum_command.service_settings import DECLARED, TRAINER, Given, flag_of, service_of
@@ -25,11 +27,23 @@ FILES_ELSEWHERE = {
 }
 """The sources that play no file, each with how a file is named instead."""
 
+OWN_SOURCE = {"camera": "camera", "recording": "path", "realsense": "path", "openni2": "path"}
+"""The setting that names what a sensor shows, by source: several sensors have one each."""
+
+DEPTH_CAMERAS = (
+    ". For depth cameras use --source none, and start a gateway for each sensor on a host of its own, because each "
+    "gateway opens the first depth camera that it finds"
+)
+"""What to do with several depth cameras instead of their recordings."""
+
 WITHOUT_CAMERA = ("simulator", "recording")
 """The sources that have no camera to choose."""
 
 SENSORS = {"none": None, "simulator": "scene_simulator"}
 """The service that puts the sensor's streams, by source, where it is not the sensor gateway."""
+
+LOCAL = "127.0.0.1"
+"""Address at which free ports are looked for: pages listen on it by default."""
 
 SCENE_MARKS = "the simulated scene marks its own actions, as a switch would"
 """How actions are found where the simulated scene marks them."""
@@ -42,13 +56,15 @@ FOUND = {
 """How actions are found, by the setting `segments`."""
 
 
-def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
+def chosen_source(named: str | None, given: Given) -> str:
     """Return the named source; where none is named, the camera if one is given, else the simulator.
 
     Raises:
         SettingsError: it does not start the service that a given setting is for, or plays no file though one is named.
     """
     source = named or ("camera" if "camera" in given else "simulator")
+    if "path" in given and source in FILES_ELSEWHERE:
+        raise SettingsError(f"--source {source} takes no file, so leave out --path: {FILES_ELSEWHERE[source]}")
     if "camera" in given and source in WITHOUT_CAMERA:
         raise SettingsError(f"--source {source} uses no camera: leave out --camera, or use --source camera")
     sensor = SENSORS.get(source, "sensor_gateway")
@@ -60,10 +76,43 @@ def chosen_source(named: str | None, given: Given, path: Path | None) -> str:
         raise SettingsError(
             f"{flag_of(name)} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
         )
-    if path is not None and source in FILES_ELSEWHERE:
-        remedy = FILES_ELSEWHERE[source]
-        raise SettingsError(f"--source {source} takes no file: to play {path}, {remedy}")
     return source
+
+
+def refuse_shared_source(source: str, given: Given, settings: ServiceSettings) -> None:
+    """Check that each of several sensors has a camera or recording of its own.
+
+    Raises:
+        SettingsError: there are more of them than sensors, or fewer.
+    """
+    count, named = len(settings.of_each_sensor), given.get(OWN_SOURCE.get(source, ""), [])
+    if count == 1 or source not in OWN_SOURCE or not isinstance(named, list) or len(named) == count:
+        return
+    flag = flag_of(OWN_SOURCE[source])
+    depth = "" if OWN_SOURCE[source] == "camera" or source == "recording" else DEPTH_CAMERAS
+    raise SettingsError(
+        f"--source {source} for {count} sensors needs {flag} {count} times, but {flag} is given {len(named)} times: "
+        f"give it once for each sensor, in the order of the sensors{depth}"
+    )
+
+
+def with_page_ports(given: Given, settings: ServiceSettings) -> Given:
+    """Return the given settings with a port for the page of each of several sensors, in their order.
+
+    The first port is the one that is set, and the others follow it. If none is set, the first free ports are taken.
+
+    Raises:
+        SettingsError: there are too few free ports.
+        ValidationError: a setting of the page cannot be used.
+    """
+    count, ports = len(settings.of_each_sensor), counted_on(given, PAGE, "page_port", settings)
+    if count == 1 or "page_port" in ports or find_spec("uvicorn") is None:
+        return ports
+    from web_dashboard.server import bound_socket  # imports uvicorn, which the command line alone does without
+
+    with ExitStack() as held:  # all at once, so that no port is found twice
+        found = [held.enter_context(bound_socket(LOCAL, None)) for _ in range(count)]
+        return {**given, "page_port": [str(each.getsockname()[1]) for each in found]}
 
 
 def refuse_marks(marked: bool, source: str, segments: str) -> None:

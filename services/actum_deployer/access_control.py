@@ -43,7 +43,7 @@ def access_control(deployment: Deployment) -> dict[str, Any]:
     """
     named, domain = deployment.common_name, deployment.ros_domain
     routers = [named(router_identity(host.name)) for host in deployment.routers]
-    own = {named(identity(role, sensor)): list(rules(role, sensor, domain)) for role, sensor in deployment.subjects}
+    own = {named(identity(role, its)): list(rules(role, its, domain)) for role, its in deployment.subjects}
     between = link_rules(deployment.images_cross, domain)
     [told] = _allowed(TOLD, "egress", WISHES, EVERYTHING)
     users = {name: {"usernames": [name]} if deployment.passwords else {} for name in own}
@@ -60,19 +60,16 @@ def access_control(deployment: Deployment) -> dict[str, Any]:
     }
 
 
-def rules(role: Role, sensor: str, ros_domain: int | None) -> Iterator[Rule]:
-    """Yield the rules of a role for a sensor; of people's roles for all sensors."""
-    name, of = identity(role, sensor), sensor if role.services else "*"
+def rules(role: Role, sensors: str, ros_domain: int | None) -> Iterator[Rule]:
+    """Yield the rules of a role for its sensors, such as `left,right`; of people's roles for all sensors."""
+    name, of = identity(role, sensors), sensors.split(",") if role.services else ["*"]
     puts = [*_patterns(role.puts, of), *_ros(role.ros_puts, of, ros_domain)]
     reads = [*_patterns(role.reads, of), *_ros(role.ros_reads, of, ros_domain)]
-    own = [
-        f"{BASE}/{of}/{place.format(service)}" for service in role.services for place in ("info/{}", "command/{}/**")
-    ]
-    states = [keys.key(keys.STATUS, of, service) for service in role.services]
-    tokens = [f"{BASE}/{of}/{token.format(service)}" for service in role.services for token in TOKENS]
+    own = _of_services(role, of, ("info/{0}", "command/{0}/**"))
+    states, tokens = _of_services(role, of, ("status/{0}",)), _of_services(role, of, TOKENS)
     asked = _asked(role, of)
-    places = [keys.claims(of, service) for service in role.services]
-    looked = [f"{BASE}/{of}/alive/**", f"{BASE}/{of}/member/**"] if role.inspects else []
+    places = [keys.claims(each, service) for each in of for service in role.services]
+    looked = [f"{BASE}/{each}/{token}/**" for each in of for token in ("alive", "member")] if role.inspects else []
     if role.speaks_ros and ros_domain is not None:
         nodes = ROS_TOKENS.format(ros_domain)
         tokens, looked = [*tokens, nodes], [*looked, nodes]
@@ -92,9 +89,9 @@ def rules(role: Role, sensor: str, ros_domain: int | None) -> Iterator[Rule]:
 def link_rules(images_cross: bool, ros_domain: int | None) -> list[Rule]:
     """Return the rules between routers: what any role may put, but images only where these may cross."""
     crossing = [topic for topic in keys.TOPICS if images_cross or topic not in IMAGES]
-    ros = _ros((*ROS_TOPICS, *ROS_MARKS), "*", ros_domain)
+    ros = _ros((*ROS_TOPICS, *ROS_MARKS), ["*"], ros_domain)
     nodes = [] if ros_domain is None else [ROS_TOKENS.format(ros_domain)]
-    content = [*_patterns(crossing, "*"), f"{BASE}/*/command/**", *ros]
+    content = [*_patterns(crossing, ["*"]), f"{BASE}/*/command/**", *ros]
     tokens = [*(f"{BASE}/*/{token.format('*')}" for token in TOKENS), *nodes]
     both: tuple[Literal["ingress", "egress"], ...] = ("ingress", "egress")
     return [
@@ -114,13 +111,18 @@ def _allowed(
         yield {"id": name, "permission": "allow", "flows": flows, "messages": [*messages], "key_exprs": exprs}
 
 
-def _patterns(topics: Iterable[Topic], sensor: str) -> list[str]:
-    return [keys.pattern(topic, sensor) for topic in topics]
+def _patterns(topics: Iterable[Topic], of: Sequence[str]) -> list[str]:
+    return [keys.pattern(topic, sensor) for topic in topics for sensor in of]
 
 
-def _ros(topics: Iterable[str], sensor: str, domain: int | None) -> list[str]:
+def _of_services(role: Role, of: Sequence[str], leaves: Sequence[str]) -> list[str]:
+    """Return keys below each sensor that hold the name of a service, in the place of `{0}` in a leaf."""
+    return [f"{BASE}/{each}/{leaf.format(service)}" for each in of for service in role.services for leaf in leaves]
+
+
+def _ros(topics: Sequence[str], of: Sequence[str], domain: int | None) -> list[str]:
     """Return the keys of ROS 2's topics, each with its type below it; none where there is no bridge."""
-    return [] if domain is None else [f"{domain}/{topic.format(sensor)}/**" for topic in topics]
+    return [] if domain is None else [f"{domain}/{topic.format(sensor)}/**" for sensor in of for topic in topics]
 
 
 def _advanced(patterns: Iterable[str]) -> list[str]:
@@ -132,10 +134,10 @@ def _wanted(role: Role, reads: Sequence[str]) -> list[str]:
     return [*reads, *_advanced(reads), *(() if role.services or not role.inspects else EVERYTHING)]
 
 
-def _asked(role: Role, of: str) -> list[str]:
-    """Return what a role asks of its sensor's services, people's of every sensor's, and of its router."""
-    infos = [keys.pattern(keys.INFO, of), ROUTER_ITSELF] if role.inspects else []
-    return [*infos, f"{BASE}/{of}/command/**"] if role.commands else infos
+def _asked(role: Role, of: Sequence[str]) -> list[str]:
+    """Return what a role asks of its sensors' services, people's of every sensor's, and of its router."""
+    infos = [*_patterns([keys.INFO], of), ROUTER_ITSELF] if role.inspects else []
+    return [*infos, *(f"{BASE}/{each}/command/**" for each in of)] if role.commands else infos
 
 
 def _ids(own: Iterable[Mapping[str, Any]]) -> list[str]:

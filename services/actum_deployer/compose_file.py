@@ -18,7 +18,6 @@ from actum_deployer.programs import (
     environment,
     own_settings,
     programs,
-    suffix,
 )
 from actum_deployer.roles import BRIDGE, CLASSIFIER, GATEWAY, ROUTER, TRACKER, TRAINER
 
@@ -49,7 +48,7 @@ def _service(deployment: Deployment, host: Host, program: Program) -> dict[str, 
         "pull_policy": "never",
         **_closed(program),
         "environment": environment(deployment, host, program, ROUTER, DATA),
-        "volumes": _mounts(program, suffix(host, program.sensor)),
+        "volumes": _mounts(program),
     }
     if program.role is None:
         command = ["router", "--config", f"{INSTALLED}/{ROUTER_FILE}"]
@@ -82,8 +81,8 @@ def _closed(program: Program) -> dict[str, Any]:
     }
 
 
-def _mounts(program: Program, several: str) -> list[str]:
-    """Return the mounts of a program: its credentials as a folder, so that renewed files are seen; its own models."""
+def _mounts(program: Program) -> list[str]:
+    """Return the mounts of a program: its credentials as a folder, so that renewed files are seen, and models."""
     mounts = []
     if program.credentials:
         mounts.append(f"./{PurePosixPath(program.credentials).relative_to(INSTALLED)}:{program.credentials}:ro")
@@ -92,7 +91,7 @@ def _mounts(program: Program, several: str) -> list[str]:
     if program.role is None:
         mounts.append(f"./{ROUTER_FILE}:{INSTALLED}/{ROUTER_FILE}:ro")
     if program.role in (CLASSIFIER, TRAINER):
-        mounts.append(f"models{several}:{DATA.models}{':ro' if program.role is CLASSIFIER else ''}")
+        mounts.append(f"models:{DATA.models}{':ro' if program.role is CLASSIFIER else ''}")
     if program.role in STATEFUL:
         mounts.append(f"state_{program.name}:{DATA.state}")
     return mounts

@@ -119,7 +119,7 @@ class Deployment:
 
     @property
     def subjects(self) -> list[tuple[Role, str]]:
-        """Every role with the sensor that it is for, all of people's included."""
+        """Every role with the sensors that it is for, all of people's included."""
         return [*(each for host in self.hosts for each in self.roles_of(host)), *((role, "") for role in self.peoples)]
 
     @property
@@ -128,8 +128,10 @@ class Deployment:
         return self._taking_part(PEOPLES)
 
     def roles_of(self, host: Host) -> list[tuple[Role, str]]:
-        """Return the roles of a host's services, each with the sensor."""
-        return [(role, sensor) for sensor in host.sensors for role in self._taking_part(KINDS[host.kind])]
+        """Return the roles of a host's services, each with its sensor, or with all of the host's: `left,right`."""
+        together = (",".join(host.sensors),)
+        roles = self._taking_part(KINDS[host.kind])
+        return [(role, its) for role in roles for its in (together if role.serves_several else host.sensors)]
 
     def _taking_part(self, roles: Iterable[Role]) -> tuple[Role, ...]:
         return tuple(role for role in roles if self.ros_domain is not None or not role.speaks_ros)

@@ -133,8 +133,10 @@ def readme(deployment: Deployment, host: Host, expiry: date) -> str:
 
 def settings_file(deployment: Deployment, host: Host) -> str:
     """Return what the file for the user's settings holds at first."""
-    simulated = deployment.simulated and host.kind == "camera"
-    return SIMULATED_SETTINGS if simulated else SETTINGS_OF[host.kind]
+    if not deployment.simulated or host.kind != "camera":
+        return SETTINGS_OF[host.kind]
+    number = deployment.sensors.index(host.sensors[0])
+    return SIMULATED_SETTINGS + (f"ACTUM_SEED={number + 1}\n" if number else "")  # each sensor sees another scene
 
 
 def _link(deployment: Deployment, host: Host) -> str:

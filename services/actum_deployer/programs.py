@@ -50,7 +50,7 @@ class Program:
         module: the Python module to run.
         image: the container's.
         role: whose it is; None for the router.
-        sensor: the sensor that it is for; empty for the router.
+        sensor: the sensor that it is for, or several, such as `left,right`; empty for the router.
         credentials: the folder below `INSTALLED` with its credentials; empty where nobody is asked for any.
         memory_mb: how much it may use.
         page_port: the page's port; 0 for others.
@@ -80,16 +80,15 @@ def programs(deployment: Deployment, host: Host) -> Iterator[Program]:
 
 def environment(deployment: Deployment, host: Host, program: Program, own_router: str, data: Data) -> dict[str, str]:
     """Return the settings of a program, where its host's router is called `own_router` and it keeps its data so."""
-    several = suffix(host, program.sensor)
     router = f"{own_router}:{host.port}" if host in deployment.routers else deployment.routers[0].endpoint
     own = {"ACTUM_CONNECT": f"{deployment.transport}/{router}", **program.environment}
     if program.credentials:
         own["ACTUM_CREDENTIALS"] = program.credentials
     if program.role in (CLASSIFIER, TRAINER):
-        own["ACTUM_MODEL"] = f"{data.models}/in-use{several}.npz"
+        own["ACTUM_MODEL"] = f"{data.models}/in-use.npz"
     if program.role is TRAINER:
-        own["ACTUM_ORIGINAL_MODEL"] = f"{data.models}/model{several}.npz"
-        own["ACTUM_TRAINER_DATA"] = f"{data.models}/teaching{several}"
+        own["ACTUM_ORIGINAL_MODEL"] = f"{data.models}/model.npz"
+        own["ACTUM_TRAINER_DATA"] = f"{data.models}/teaching"
     if program.role in STATEFUL:
         own["ACTUM_STATE"] = data.state
     if program.role is BRIDGE:
@@ -105,8 +104,8 @@ def own_settings(program: Program) -> str:
 
 
 def suffix(host: Host, sensor: str) -> str:
-    """Return what tells the programs and files of several sensors of a host apart."""
-    return f"-{sensor}" if len(host.sensors) > 1 else ""
+    """Return what tells the programs of several sensors of a host apart; empty for a program that serves them all."""
+    return f"-{sensor}" if len(host.sensors) > 1 and sensor in host.sensors else ""
 
 
 def _program(deployment: Deployment, host: Host, role: Role, sensor: str) -> Program:

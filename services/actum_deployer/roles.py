@@ -20,10 +20,11 @@ class Role:
     """One row of the table.
 
     Attributes:
-        name: the role's name; with a sensor's it is the identity that a certificate shows, `gateway.kinect0`.
+        name: the role's name; with its sensors' it is the identity that a certificate shows, `gateway.kinect0`.
         about: who has it, for people.
-        services: the services that run with it, each for one sensor: it puts their status and answers for them. None
-            for a person's program, which may work with every sensor.
+        services: the services that run with it: it puts their status and answers for them. None for a person's
+            program, which may work with every sensor.
+        serves_several: whether one process of it serves all sensors of its host, instead of one for each.
         puts: the topics that it puts.
         reads: the topics that it receives.
         inspects: whether it may ask which services there are, and for their descriptions.
@@ -35,6 +36,7 @@ class Role:
     name: str
     about: str
     services: tuple[str, ...] = ()
+    serves_several: bool = False
     puts: tuple[Topic, ...] = ()
     reads: tuple[Topic, ...] = ()
     inspects: bool = False
@@ -62,6 +64,7 @@ PREPROCESSOR = Role(
     "preprocessor",
     "the preprocessor",
     services=("pose_preprocessor",),
+    serves_several=True,
     puts=(keys.POSTURE,),
     reads=(keys.SKELETON,),
 )
@@ -69,6 +72,7 @@ CLASSIFIER = Role(
     "classifier",
     "the classifier, which also publishes the segments that it finds",
     services=("som_classifier",),
+    serves_several=True,
     puts=(keys.SEGMENT, keys.ACTION, keys.HELD_BACK),
     reads=(keys.POSTURE, keys.SEGMENT, keys.ACTION),
 )
@@ -76,6 +80,7 @@ TRACKER = Role(
     "tracker",
     "the marker tracker",
     services=("marker_tracker",),
+    serves_several=True,
     puts=(keys.OBJECTS,),
     reads=(keys.COLOR,),
 )
@@ -83,6 +88,7 @@ FUSION = Role(
     "fusion",
     "the fusion",
     services=("action_fusion",),
+    serves_several=True,
     puts=(keys.EVENT,),
     reads=(keys.POSTURE, keys.OBJECTS, keys.ACTION, keys.EVENT),
 )
@@ -90,6 +96,7 @@ TRAINER = Role(
     "trainer",
     "the trainer",
     services=("model_trainer",),
+    serves_several=True,
     puts=(keys.TRAINING,),
     reads=(keys.SKELETON, keys.SEGMENT),
 )
@@ -146,13 +153,17 @@ ROUTER = "router"
 """The name of a router's role; with its host's it is its identity, `router.camera`."""
 LONGEST_COMMON_NAME = 64
 """Characters of a certificate's common name (RFC 5280)."""
+LONGEST_FOLDER = 255
+"""Characters of a folder's name on usual file systems: credentials lie in one that is called like their identity."""
 DIGEST_LENGTH = 16
 """Characters of the digest that stands for the end of a name that is too long."""
 
 
-def identity(role: Role, sensor: str) -> str:
-    """Return the identity of who has a role: a service's holds the sensor that it is for."""
-    return f"{role.name}.{sensor}" if role.services else role.name
+def identity(role: Role, sensors: str) -> str:
+    """Return the identity of who has a role: a service's names its sensors, such as `classifier.left+right`."""
+    if not role.services:
+        return role.name
+    return shortened(f"{role.name}.{sensors.replace(',', '+')}", LONGEST_FOLDER)
 
 
 def router_identity(host: str) -> str:

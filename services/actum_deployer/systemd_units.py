@@ -19,7 +19,6 @@ from actum_deployer.programs import (
     environment,
     own_settings,
     programs,
-    suffix,
 )
 from actum_deployer.roles import CLASSIFIER, GATEWAY, TRAINER, shortened
 
@@ -119,7 +118,7 @@ def user_of(name: str) -> str:
 
 def _unit(deployment: Deployment, host: Host, program: Program) -> str:
     sees_devices = program.role is GATEWAY and not deployment.simulated
-    teacher = TRAINER.services[0] + suffix(host, program.sensor)
+    teacher = TRAINER.services[0]
     settings = environment(
         deployment, host, program, "localhost", Data(f"{STATE}/{teacher}", f"{STATE}/{program.name}")
     )

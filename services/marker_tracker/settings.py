@@ -6,7 +6,7 @@ from typing import Annotated
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from actum.messages import LARGEST_SIDE_PX
-from actum.settings import NodeSettings
+from actum.settings import SharedSettings
 
 Pixels = Annotated[int, Field(gt=0, le=LARGEST_SIDE_PX)]
 
@@ -20,7 +20,7 @@ class ObjectSpec(BaseModel):
     size_m: float | None = Field(None, gt=0, le=10)
 
 
-class Settings(NodeSettings):
+class Settings(SharedSettings):
     """Settings of the marker tracker, besides those of every service."""
 
     scene: Path | None = Field(

@@ -4,13 +4,13 @@ from pathlib import Path
 
 from pydantic import Field
 
-from actum.settings import ServiceSettings, data_folder
+from actum.settings import NodeSettings, data_folder
 
 MODEL = "model.npz"
 """The file, in the trainer's folder, of the model that was put into use last."""
 
 
-class Settings(ServiceSettings):
+class Settings(NodeSettings):
     """The settings of the trainer, and those of every service."""
 
     trainer_data: Path = Field(

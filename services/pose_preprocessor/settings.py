@@ -2,10 +2,10 @@
 
 from pydantic import Field
 
-from actum.settings import NodeSettings
+from actum.settings import SharedSettings
 
 
-class Settings(NodeSettings):
+class Settings(SharedSettings):
     """Settings of the preprocessor, beside those of every service."""
 
     reach_limit_m: float = Field(

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, FiniteFloat
 from pydantic_settings import NoDecode
 
-from actum.settings import NodeSettings
+from actum.settings import SharedSettings
 from som_classifier.segmentation import Segmentation, WantedSegments
 from som_classifier.spotting.spotted import SpottingOptions
 
@@ -37,7 +37,7 @@ def _pairs(value: Any) -> Any:
 Names = Annotated[frozenset[str], NoDecode, BeforeValidator(_names)]
 
 
-class Settings(NodeSettings):
+class Settings(SharedSettings):
     """The settings of the classifier, beside those of every service."""
 
     model: Path | None = Field(

@@ -1,5 +1,6 @@
 """The page's service: takes what is put on the sensor's keys, and gives it to the browsers."""
 
+import logging
 from collections import deque
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
@@ -14,6 +15,8 @@ from web_dashboard.hub import Hub
 from web_dashboard.orders import Orders
 from web_dashboard.server import PageServer, bound_socket
 from web_dashboard.settings import Settings
+
+log = logging.getLogger("actum")
 
 MOST_REFUSALS = 1000
 """Refusals that wait to be counted, which they are ten times a second."""
@@ -38,6 +41,7 @@ class WebDashboard:
 
     def __init__(self, settings: Settings, hub: Hub, orders: Orders, server: PageServer) -> None:
         self.counters = Counters(details={"page": server.address})
+        self._sensor = settings.sensor
         self._hub = hub
         self._orders = orders
         self._server = server
@@ -68,6 +72,7 @@ class WebDashboard:
 
     def serving(self) -> AbstractContextManager[None]:
         """Serve browsers, also while there is no router yet."""
+        log.info("sensor %s, the page: %s", self._sensor, self._server.address)
         return self._server.serving()
 
     def attach(self, client: Client | None) -> None:

@@ -13,8 +13,6 @@ from starlette.types import ASGIApp
 from actum.settings import SettingsError
 from web_dashboard.orders import LONGEST_ORDER_BYTES
 
-log = logging.getLogger("actum")
-
 PORTS = range(8080, 8180)
 """The ports that are tried where none is set."""
 EVERYWHERE = ("0.0.0.0", "::")
@@ -96,7 +94,6 @@ class PageServer:
     @contextmanager
     def serving(self) -> Iterator[None]:
         """Serve until left."""
-        log.info("the page: %s", self.address)
         self._thread.start()
         try:
             yield

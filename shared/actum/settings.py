@@ -155,6 +155,11 @@ class ServiceSettings(BaseSettings):
         ),
     )
 
+    @property
+    def of_each_sensor(self) -> list[Self]:
+        """The settings for each of the sensors: one, except for `NodeSettings`."""
+        return [self.model_copy(update={"sensor": sensor}) for sensor in dict.fromkeys(self.sensor.split(","))]
+
     @classmethod
     def settings_customise_sources(
         cls,
@@ -183,16 +188,20 @@ class ServiceSettings(BaseSettings):
 
 
 class NodeSettings(ServiceSettings):
-    """The settings of a service that may serve several sensors in one process."""
+    """The settings of a service, or of a whole system, that may serve several sensors."""
 
     sensor: str = Field(
         "kinect0",
         pattern=f"^{CHUNK.pattern}(,{CHUNK.pattern})*$",
         description=(
             "name of the sensor, such as kinect0; programs receive each other's messages only if they were started "
-            "with the same name. Several names, such as kinect0,kinect1: this process serves all of these sensors"
+            "with the same name. Several names, such as left,right, mean several sensors at once"
         ),
     )
+
+
+class SharedSettings(NodeSettings):
+    """The settings of a service whose sensors several processes may share."""
 
     share: bool = Field(
         False,
@@ -202,8 +211,3 @@ class NodeSettings(ServiceSettings):
             "to each other's answers instead of storing them in the folder --state"
         ),
     )
-
-    @property
-    def of_each_sensor(self) -> list[Self]:
-        """The settings for each of the sensors."""
-        return [self.model_copy(update={"sensor": sensor}) for sensor in dict.fromkeys(self.sensor.split(","))]

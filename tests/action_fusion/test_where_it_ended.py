@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from action_fusion.settings import Settings
 from actum import geometry
+from actum.command_line import from_command_line
 from actum.messages import ActedObject
 from fused import event_of
 from rotation_of import rotation_of
@@ -123,6 +124,34 @@ def world_from_camera(turn_rad: float, tilt_rad: float, place: tuple[float, floa
 
 
 angle = st.floats(-3.1, 3.1)
+
+
+def test_the_transform_of_one_camera_is_not_taken_for_that_of_several() -> None:
+    identity = geometry.flat(np.eye(4))
+    assert Settings(sensor="left", world_from_camera=identity).fixed_from_camera is not None
+    with pytest.raises(ValidationError, match="name the files with {sensor} in place of the sensor's name"):
+        Settings(sensor="left,right", world_from_camera=identity)
+
+
+def test_each_of_several_sensors_reads_the_transform_of_its_own_camera(
+    tmp_path: File, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for number, sensor in enumerate(("left", "right")):
+        np.savetxt(tmp_path / f"world-{sensor}.txt", world_from_camera(0.0, 0.0, (number, 0.0, 0.0)))
+    monkeypatch.setenv("ACTUM_WORLD_FROM_CAMERA", str(tmp_path / "world-{sensor}.txt"))
+    for sensors in (["left", "right"], ["right"]):
+        each = from_command_line(Settings, "action_fusion", ["--sensor", ",".join(sensors)]).of_each_sensor
+        found = [own.fixed_from_camera for own in each]
+        assert [own.sensor for own in each] == sensors
+        assert [transform[0, 3] for transform in found if transform is not None] == [
+            {"left": 0.0, "right": 1.0}[sensor] for sensor in sensors
+        ]
+    flagged = ["--sensor", "left", "--world-from-camera", str(tmp_path / "world-{sensor}.txt")]
+    assert from_command_line(Settings, "action_fusion", flagged).fixed_from_camera is not None
+    (tmp_path / "world-right.txt").unlink()
+    both = Settings(sensor="left,right")
+    with pytest.raises(ValueError, match=r"world-right\.txt' is neither a list of numbers nor a readable file"):
+        _ = both.of_each_sensor
 
 
 @settings(max_examples=20)  # each one runs a whole scene

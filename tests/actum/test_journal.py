@@ -13,6 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from actum import keys
 from actum.codec import Frame
 from actum.messages import Message
 from actum.node import Counters
@@ -142,6 +143,8 @@ def frame(number: int) -> Frame:
 
 
 class Remembers:
+    answers, is_busy = keys.EVENT, False
+
     def remember(self, answers: Sequence[Message]) -> None:
         pass
 

@@ -12,7 +12,7 @@ from actum_command.model_in_use import ModelInUse
 
 
 def environment_of_tracker(given: dict[str, bool | list[str]]) -> dict[str, str]:
-    programs = processes.system(ServiceSettings(), "simulator", None, ModelInUse(Path("model.npz")), given)
+    programs = processes.system(ServiceSettings(), "simulator", ModelInUse(Path("model.npz")), given)
     (tracker,) = [program for program in programs if program.name == "marker_tracker"]
     return dict(tracker.environment)
 

@@ -38,6 +38,16 @@ def test_a_sensors_name_may_be_as_long_as_keys_admit(length: int, tmp_path: Path
     assert {shown(folder) for folder in folders} <= named
 
 
+def test_many_sensors_of_long_names_have_credentials_in_folders_that_can_be_made(tmp_path: Path) -> None:
+    names = [f"{number:064}" for number in range(5)]
+    cameras = ",".join(f"camera{number}=a{number}" for number in range(5))
+    deployment = Deployment(hosts_of(f"{cameras},compute=c", ",".join(names)))
+    write_deployment(deployment, tmp_path, days=30)
+    [folder] = (tmp_path / "compute" / "credentials").glob("classifier.*")
+    subjects = access_control(deployment)["subjects"]
+    assert shown(folder) in {name for subject in subjects for name in subject["cert_common_names"]}
+
+
 def test_a_hosts_name_may_be_as_long(tmp_path: Path) -> None:
     camera = "camera" + "a" * 58
     deployment = Deployment(hosts_of(f"{camera}=a,compute=b"))

@@ -9,6 +9,8 @@ from action_fusion.node import ActionFusion
 from actum import keys
 from actum.keys import Topic
 from actum.node import replay
+from actum.settings import NodeSettings
+from actum_command.service_settings import SETTINGS
 from actum_deployer.access_control import TOLD, access_control, link_rules, rules
 from actum_deployer.deployment import Deployment, hosts_of
 from actum_deployer.roles import BRIDGE, GATEWAY, IMAGES, PAGE, PEOPLES, ROBOT, ROLES, SWITCH, VIEWER, Role, identity
@@ -63,6 +65,35 @@ def test_a_service_speaks_for_its_own_sensor_alone() -> None:
     said = set.union(*(allowed(GATEWAY, "ingress", kind) for kind in ("put", "reply", "liveliness_token")))
     assert said
     assert all(expression.startswith("actum/kinect0/") for expression in said)
+
+
+@pytest.mark.parametrize("role", [role for role in ROLES if role.serves_several], ids=lambda role: role.name)
+def test_who_serves_several_sensors_may_do_for_each_what_it_may_for_one_and_nothing_for_others(role: Role) -> None:
+    def wordings(sensors: str) -> set[tuple[str, str, str]]:
+        """What is allowed: the flow, the kind of message and the key expression."""
+        return {
+            (flow, message, expression)
+            for rule in rules(role, sensors, None)
+            for flow in rule["flows"]
+            for message in rule["messages"]
+            for expression in rule["key_exprs"]
+        }
+
+    assert wordings("left,right") == wordings("left") | wordings("right")
+    assert all(expression.split("/")[1] in ("left", "right") for *_, expression in wordings("left,right"))
+
+
+def test_who_serves_several_sensors_is_a_service_whose_settings_name_several() -> None:
+    able = {service for service, declared in SETTINGS.items() if issubclass(declared, NodeSettings)}
+    assert able == {service for role in ROLES if role.serves_several for service in role.services}
+
+
+def test_a_certificate_for_several_sensors_is_none_of_one_of_them() -> None:
+    hosts = hosts_of("camera1=a,camera2=b,compute=c", "left,right")
+    subjects = access_control(Deployment(hosts))["subjects"]
+    names = {name for subject in subjects for name in subject["cert_common_names"]}
+    assert {"classifier.left+right", "page.left", "page.right", "gateway.left", "tracker.right"} <= names
+    assert names.isdisjoint({"classifier.left", "classifier.right", "page.left+right"})
 
 
 def test_a_viewer_says_nothing_and_asks_only_who_is_there() -> None:

@@ -123,22 +123,60 @@ def test_with_one_router_the_others_connect_to_it(tmp_path: Path) -> None:
     assert compose(tmp_path, "compute")["som_classifier"]["environment"]["ACTUM_CONNECT"] == "tls/192.168.1.5:7447"
 
 
-def test_several_sensors_on_a_host_keep_apart(tmp_path: Path) -> None:
-    write_deployment(Deployment(hosts_of("camera1=a,camera2=b,compute=c")), tmp_path, days=30)
-    services = compose(tmp_path, "compute")
-    for setting in ("ACTUM_SENSOR", "ACTUM_MODEL", "ACTUM_CREDENTIALS"):
-        values = [services[f"som_classifier-kinect{n}"]["environment"][setting] for n in (0, 1)]
-        assert values[0] != values[1]
-    for program in ("som_classifier", "action_fusion", "model_trainer"):
-        mounts = [
-            {mount.split(":")[1]: mount.split(":")[0] for mount in services[f"{program}-kinect{n}"]["volumes"]}
-            for n in (0, 1)
-        ]
-        kept = [services[f"{program}-kinect{n}"]["environment"].get("ACTUM_STATE") for n in (0, 1)]
-        assert all(path is None or path in mounted for path, mounted in zip(kept, mounts, strict=True)), program
-        assert {*mounts[0].values()}.isdisjoint(mounts[1].values()), program
-    pages = [services[f"web_dashboard-kinect{n}"]["ports"] for n in (0, 1)]
-    assert pages == [["127.0.0.1:8080:8080"], ["127.0.0.1:8081:8081"]]
+SHARED = ("pose_preprocessor", "som_classifier", "action_fusion", "model_trainer")
+"""The services of a host that computes which are one process for all of its sensors."""
+
+
+@pytest.fixture
+def two_sensors(tmp_path: Path) -> Path:
+    hosts = hosts_of("camera1=a,camera2=b,compute=c", "left,right")
+    write_deployment(Deployment(hosts, simulated=True), tmp_path, days=30)
+    return tmp_path
+
+
+def test_a_host_computes_for_all_of_its_sensors_by_one_process_of_each_service_and_a_page_for_each(
+    two_sensors: Path,
+) -> None:
+    services = compose(two_sensors, "compute")
+    assert services.keys() == {"router", *SHARED, "web_dashboard-left", "web_dashboard-right"}
+    for name in SHARED:
+        environment = services[name]["environment"]
+        assert environment["ACTUM_SENSOR"] == "left,right"
+        assert environment["ACTUM_CREDENTIALS"].endswith(".left+right")
+    pages = [services[f"web_dashboard-{sensor}"] for sensor in ("left", "right")]
+    assert [page["ports"] for page in pages] == [["127.0.0.1:8080:8080"], ["127.0.0.1:8081:8081"]]
+    assert [page["environment"]["ACTUM_SENSOR"] for page in pages] == ["left", "right"]
+
+
+def test_each_sensors_host_has_its_own_source_and_tracker_and_simulated_scenes_differ(two_sensors: Path) -> None:
+    for host, sensor in (("camera1", "left"), ("camera2", "right")):
+        services = compose(two_sensors, host)
+        assert services.keys() == {"router", "sensor_gateway", "marker_tracker"}
+        for name in ("sensor_gateway", "marker_tracker"):
+            assert services[name]["environment"]["ACTUM_SENSOR"] == sensor
+            assert services[name]["environment"]["ACTUM_CREDENTIALS"].endswith(f".{sensor}")
+    settings = [(two_sensors / host / "settings.env").read_text() for host in ("camera1", "camera2")]
+    assert ["ACTUM_SEED=2" in text for text in settings] == [False, True]
+
+
+def test_the_sensors_of_a_host_share_the_models_that_its_trainer_puts_into_use(two_sensors: Path) -> None:
+    services = compose(two_sensors, "compute")
+    classifier, trainer = services["som_classifier"], services["model_trainer"]
+    assert classifier["environment"]["ACTUM_MODEL"] == trainer["environment"]["ACTUM_MODEL"]
+    assert "models:/models:ro" in classifier["volumes"]
+    assert "models:/models" in trainer["volumes"]
+
+
+def test_every_host_of_several_sensors_has_the_credentials_of_its_programs_and_no_others(two_sensors: Path) -> None:
+    for host in ("camera1", "camera2", "compute"):
+        shown = {
+            Path(service["environment"]["ACTUM_CREDENTIALS"]).name
+            for name, service in compose(two_sensors, host).items()
+            if name != "router"
+        }
+        assert {each.name for each in (two_sensors / host / "credentials").iterdir()} == {"router", *shown}
+        for identity in shown:
+            check(two_sensors / host / "credentials" / identity)
 
 
 def test_renewed_are_certificates_and_keys_and_nothing_else(written: Path) -> None:

@@ -28,7 +28,7 @@ HEALTHY_WITHIN_S = 5.0
 LARGEST_IMAGE_MB = 350
 """Of any image but the camera's, as `docker image ls` counts."""
 COMPOSE_FILES = (MAIN, *sorted(DEPLOY.glob("compose.*.yml")))
-OVERLAYS = {"zenohd", "realsense", "openni2"}
+OVERLAYS = {"zenohd", "realsense", "openni2", "two-sensors"}
 """Files that are laid over another, whose services they change."""
 HARDENED = {
     "init": True,
@@ -138,6 +138,19 @@ def test_who_answers_keeps_the_answers_where_they_stay(services):
         assert f"state:{folder}" in services[name]["volumes"]
 
 
+def test_two_sensors_share_a_container_of_each_service_and_have_a_scene_a_page_and_a_watch_each():
+    laid_over = services_of(DEPLOY / "compose.two-sensors.yml")
+    sensors = {name: service["environment"]["ACTUM_SENSOR"] for name, service in laid_over.items()}
+    of_one = ("scene_simulator", "web_dashboard", "watch")
+    assert sensors == {
+        **dict.fromkeys((*SERVICES, TRAINER), "left,right"),
+        **dict.fromkeys(of_one, "left"),
+        **{f"{name}_right": "right" for name in of_one},
+    }
+    for name in of_one:
+        assert laid_over[f"{name}_right"]["extends"] == {"file": "docker-compose.yml", "service": name}
+
+
 def test_zenohd_reads_the_same_configuration_file(services):
     mounted = services["router"]["volumes"][0].split(":")
     assert (ROOT / mounted[0]).samefile(ROUTER_CONFIG)
@@ -211,11 +224,19 @@ def deaths(since_s: float) -> list[dict[str, Any]]:
 
 
 @pytest.mark.containers
-@pytest.mark.parametrize("files", [["docker-compose.yml"], ["docker-compose.yml", "deploy/compose.zenohd.yml"]])
+@pytest.mark.parametrize(
+    "files",
+    [
+        ["docker-compose.yml"],
+        *(["docker-compose.yml", f"deploy/compose.{name}.yml"] for name in ("zenohd", "two-sensors")),
+    ],
+)
 def test_compose_accepts(files):
     resolved = engine("compose", *(word for file in files for word in ("-f", file)), "config", "--format", "json")
     published = {name: s["ports"] for name, s in json.loads(resolved)["services"].items() if "ports" in s}
-    assert all(name in ("router", "web_dashboard") and len(ports) == 1 for name, ports in published.items())
+    reached = {"router", "web_dashboard", "web_dashboard_right"}
+    assert all(name in reached and len(ports) == 1 for name, ports in published.items())
+    assert len({ports[0]["published"] for ports in published.values()}) == len(published)
     router = json.loads(resolved)["services"].get("router", {})
     assert router.get("image", "").startswith("eclipse/zenoh:") is ("deploy/compose.zenohd.yml" in files)
     assert ("build" in router) is (router.get("image") == "actum/actum_command")

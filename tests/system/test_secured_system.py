@@ -9,7 +9,9 @@ from actum.messages import Event, Status
 from actum.runtime import Client, Listening
 from actum.runtime.serving import TAKEN
 from actum_command.doctor.diagnosis import EXPECTED
+from actum_command.simulated_model import SIMULATED_MODEL
 from deployments import Deployed, deployed
+from events import event
 from live import PATIENCE_S, Running, collect, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
@@ -106,6 +108,31 @@ def test_marks_by_hand_are_answered_and_there_is_one_of_each_service(scene_model
             assert event.segment_id == "by-hand"
             fusion = next(each for each in running.running if each.log.name.startswith("action_fusion"))
             assert_second_is_refused(running, fusion)
+
+
+def test_one_process_of_each_service_recognises_for_all_of_its_sensors_and_may_speak_for_no_other(
+    tmp_path: Path,
+) -> None:
+    with deployed(tmp_path, sensors=("left", "right"), passwords=True) as running:
+        for module in ("pose_preprocessor", "action_fusion"):
+            running.start(module, "compute", sensor="left,right")
+        running.start("som_classifier", "compute", "--model", str(SIMULATED_MODEL), sensor="left,right")
+        for host, sensor in (("camera", "left"), ("camera-right", "right")):
+            running.start("marker_tracker", host, sensor=sensor)
+            running.start("scene_simulator", host, sensor=sensor)
+        with running.client("viewer", "compute", "left") as viewer:
+            for sensor in ("left", "right"):
+                events = viewer.listen(keys.pattern(keys.EVENT, sensor))
+                found = collect(events, Event, lambda found: any(each.valid and each.object for each in found), SCENE_S)
+                assert {each.sensor for each in found} == {sensor}
+            everything = viewer.listen(keys.pattern(keys.EVENT))
+            with running.client("fusion.left+right", "compute", "left") as fusion:
+                for sensor in ("other", "left"):
+                    fusion.put(event("put-last", "a sentence").model_copy(update={"sensor": sensor}))
+                heard = collect(
+                    everything, Event, lambda heard: any(each.segment_id == "put-last" for each in heard), SCENE_S
+                )
+            assert {each.sensor for each in heard} <= {"left", "right"}
 
 
 def wait_for_all_but_marks(viewer: Client) -> None:

@@ -223,8 +223,7 @@ def test_a_viewer_cannot_stand_in_for_a_service(deployment: Deployed, third: Thi
 
 def test_a_page_asks_the_services_of_its_own_sensor_and_no_others(tmp_path: Path) -> None:
     with deployed(tmp_path, sensors=("kinect0", "kinect1")) as two:
-        for sensor in ("kinect0", "kinect1"):
-            two.start("pose_preprocessor", "compute", sensor=sensor)
+        two.start("pose_preprocessor", "compute", sensor="kinect0,kinect1")
         with two.client("switch", "compute", "kinect1") as switch:
             wait_until(lambda: len(switch.infos()) == 1, "the other sensor's service is there")
             assert switch.ask("pose_preprocessor", "parameters")

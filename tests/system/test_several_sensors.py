@@ -1,18 +1,21 @@
 """One process serves several sensors: each as if it were alone, with one session and one model."""
 
+import re
+import signal
 from pathlib import Path
 
 import pytest
 
 from actum import keys
-from actum.messages import Posture, Skeleton, Status
+from actum.messages import Event, Posture, Skeleton, Status
 from actum.node import Counters
 from actum.runtime import Client
 from actum.runtime.serving import TAKEN
+from actum_command.processes import SERVICES
 from live import PATIENCE_S, System, collect, described, wait_until
 from people import reaches
 from recognisers import tiny_model
-from som_classifier.model_loading import WatchedModel
+from som_classifier.model_loading import WatchedModel, load_model
 
 pytestmark = pytest.mark.system
 SENSORS = ("left", "right")
@@ -61,6 +64,56 @@ def test_a_sensor_that_another_serves_is_refused_and_a_successor_takes_over_its_
         assert "right: the instance successor replaces this instance" in both.said()
         assert [key.split("/")[-1] for key in left.alive()] == ["both"]
         assert answered(left) == [frame.stamp_ns for frame in frames("left")]
+
+
+def processes_that_serve(client: Client) -> dict[str, set[str]]:
+    """The services of a sensor that describe themselves, each with its instances."""
+    return {info.service: {info.instance} for info in client.infos()}
+
+
+def test_up_recognises_what_is_done_before_each_sensor_with_one_process_of_each_service(running: System) -> None:
+    up = running.start("actum_command", "up", "--sensors", ",".join(SENSORS))
+    with running.client("left") as left, running.client("right") as right:
+        served: list[dict[str, set[str]]] = []
+        for client in (left, right):
+            running.wait_for_services(client, "sensor_gateway", "web_dashboard", "model_trainer", *SERVICES)
+            events = client.listen(keys.pattern(keys.EVENT, client.sensor))
+            found = collect(events, Event, lambda found: any(event.valid for event in found))
+            assert {event.sensor for event in found} == {client.sensor}
+            served.append(processes_that_serve(client))
+        for service in (*SERVICES, "model_trainer"):
+            assert served[0][service] == served[1][service], service
+        for service in ("sensor_gateway", "web_dashboard"):
+            assert served[0][service] != served[1][service], service
+        for sensor in SENSORS:
+            assert re.search(rf"sensor {sensor}, the page: http://127.0.0.1:\d+/", up.said())
+        doctor = running.actum("doctor", "--sensors", ",".join(SENSORS))
+        assert "not running" not in doctor.stdout
+        assert doctor.stdout.count("pose_preprocessor") >= 2
+    up.process.send_signal(signal.SIGINT)
+    assert up.process.wait(timeout=PATIENCE_S) == 0
+
+
+def test_a_model_that_is_put_into_use_at_one_sensor_is_that_of_all(running: System, tmp_path: Path) -> None:
+    running.start_router()
+    models = tmp_path / "teaching" / "models"
+    models.mkdir(parents=True)
+    tiny_model().save(models / "taught.npz")
+    running.start("model_trainer", "--sensor", ",".join(SENSORS))
+    running.start("som_classifier", "--sensor", ",".join(SENSORS), "--model", str(tmp_path / "teaching" / "model.npz"))
+    with running.client("left") as left, running.client("right") as right:
+        for client in (left, right):
+            running.wait_for_services(client, "model_trainer", "som_classifier")
+            assert client.ask("model_trainer", "state")["model"] is None
+        model = load_model(models / "taught.npz").id
+        right.ask("model_trainer", "activate", model=model)
+
+        def used(client: Client) -> bool:
+            classifying = [info.model for info in client.infos() if info.service == "som_classifier"]
+            return classifying == [client.ask("model_trainer", "state")["model"]] == [model]
+
+        for client in (left, right):
+            wait_until(lambda client=client: used(client), f"the model is in use at {client.sensor}")
 
 
 def test_nodes_that_read_one_file_share_the_model(tmp_path: Path) -> None:

@@ -9,7 +9,8 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from actum_command.commands.terminal import connect, console, say
+from actum.settings import NodeSettings, ServiceSettings
+from actum_command.commands.terminal import connect, console, say, settings
 from actum_command.doctor.diagnosis import examine
 from actum_command.doctor.service_checks import Finding
 from actum_command.misspelt import misspelt
@@ -26,22 +27,36 @@ SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
 def doctor() -> None:
     """Check the running system and print what is wrong: router, services, streams, versions, clocks, misspelt settings.
 
-    Run this command when events are missing. Its exit code is 1 if it finds a problem.
+    Run this command when events are missing. Its exit code is 1 if it finds a problem. With --sensors left,right, each
+    sensor is checked in turn.
     """
-    with connect() as client:
+    each = settings(NodeSettings).of_each_sensor
+    are_well = []
+    for here in each:
+        if len(each) > 1:
+            say(f"sensor {here.sensor}", style="bold")
+        are_well.append(_is_well(here))
+    misspellings = list(misspelt(os.environ))
+    for line in misspellings:
+        say(line, style="red")
+    if misspellings or not all(are_well):
+        raise typer.Exit(1)
+    console.print("[green]all services are there, alive and of one version[/green]")
+
+
+def _is_well(here: ServiceSettings) -> bool:
+    """Examine the services of one sensor, print what was found, and return whether it is no problem."""
+    with connect(here=here) as client:
         found = examine(client)
     show(found.findings, console)
     for fact in found.facts:
         console.print(fact, markup=False, soft_wrap=True)
     for remark in (*(remark for finding in found.findings for remark in finding.remarks), *found.remarks):
         say(remark, style="yellow")
-    own = [problem for finding in found.findings for problem in finding.problems]
-    problems = [*misspelt(os.environ), *own, *found.problems]
+    problems = [*(problem for finding in found.findings for problem in finding.problems), *found.problems]
     for problem in problems:
         say(problem, style="red")
-    if problems:
-        raise typer.Exit(1)
-    console.print("[green]all services are there, alive and of one version[/green]")
+    return not problems
 
 
 def show(findings: list[Finding], console: Console) -> None:

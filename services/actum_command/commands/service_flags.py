@@ -9,22 +9,29 @@ from typing import Annotated, Any
 import typer
 
 from actum.command_line import explained, placeholder
-from actum.settings import ServiceSettings
+from actum.settings import NodeSettings, ServiceSettings
 from actum_command.service_settings import SET_BY_UP, SETTINGS, flag_of, negated_flag_of
 
 ROUTER_VARIABLES = {"connect": "ACTUM_CONNECT", "sensor": "ACTUM_SENSOR"}
 """The settings that say which router and whose keys are meant, with their environment variables."""
 
+SEVERAL = "--sensors"
+"""Another spelling of `--sensor` where it may name several."""
+
 Command = Callable[..., None]
 """A command's function: its parameters are the arguments and options of the command."""
 
 
-def with_router_flags(command: Command) -> Command:
-    """Add the router's flags to a command; the command and the processes that it starts read their environment."""
+def with_router_flags(command: Command, read: type[ServiceSettings] = ServiceSettings) -> Command:
+    """Add the router's flags to a command; the command and the processes that it starts read their environment.
+
+    A command that reads them as `NodeSettings` takes several sensors.
+    """
     flags = {}
     for name, variable in ROUTER_VARIABLES.items():
-        words: dict[str, Any] = {"help": ServiceSettings.model_fields[name].description, "envvar": variable}
-        flags[name] = Annotated[str | None, typer.Option(flag_of(name), metavar="TEXT", **words)]
+        words: dict[str, Any] = {"help": read.model_fields[name].description, "envvar": variable}
+        also = (SEVERAL,) if name == "sensor" and issubclass(read, NodeSettings) else ()
+        flags[name] = Annotated[str | None, typer.Option(flag_of(name), *also, metavar="TEXT", **words)]
 
     def with_environment(values: Mapping[str, Any], arguments: Mapping[str, Any]) -> None:
         os.environ.update({ROUTER_VARIABLES[name]: value for name, value in values.items() if value is not None})

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from actum.installing import adding
 from actum.runtime import needs_extra, run_bridge, serve_router, stop_on_signals
-from actum.settings import DEFAULT_ENDPOINT, ServiceSettings, SettingsError, complaint, host_and_port
+from actum.settings import DEFAULT_ENDPOINT, NodeSettings, ServiceSettings, SettingsError, complaint, host_and_port
 from actum_command import processes
 from actum_command.commands.service_flags import with_flags_of
 from actum_command.commands.terminal import fail, failing_on, say, settings
@@ -23,10 +23,12 @@ from actum_command.startup import (
     how_found,
     lack_of_model,
     refuse_marks,
+    refuse_shared_source,
     refuse_taken,
     segments_of,
     source_of,
     wait_for_router,
+    with_page_ports,
 )
 from actum_command.supervising import Program, Supervisor, UnusableError
 from ros2_bridge.settings import Settings as BridgeSettings
@@ -99,15 +101,6 @@ def up(
             "none (another program publishes them). Default: camera if --camera is given, otherwise simulator"
         ),
     ] = None,
-    path: Annotated[
-        Path | None,
-        typer.Option(
-            help=(
-                "the recording to play with --source recording: a file, or a folder whose files are played in the "
-                "order of their names"
-            )
-        ),
-    ] = None,
     model: Annotated[
         Path | None,
         typer.Option(
@@ -137,27 +130,41 @@ def up(
 
     Without options, the system runs with a simulated scene; use --camera 0 for a webcam. A service that ends is started
     again.
+
+    With --sensors left,right, each service serves both sensors. Each sensor has its own source and web page. Give a
+    setting of these once for each sensor, in the order of the sensors, or once for all: --camera 0 --camera 2. Each
+    simulated scene has another --seed.
     """
-    here = settings()
+    here = settings(NodeSettings)
     if here.credentials is not None:
         fail("'actum up' starts its own router and services, which use no credentials: unset ACTUM_CREDENTIALS")
     try:
-        source = chosen_source(source, given, path)
+        source = chosen_source(source, given)
+        refuse_shared_source(source, given, here)
         segments = segments_of(given)
         refuse_marks(marked, source, segments)
         refuse_taken(here.connect)
         with model_in_use(model, source, given) as chosen:
-            programs = processes.system(here, source, path, chosen, given)
-            programs += [processes.scene(here)] if marked else []
-            say(f"actum starts on {here.connect}, sensor {here.sensor}: try 'actum watch'; Ctrl-C ends")
+            programs = processes.system(here, source, chosen, given)
+            programs += processes.scenes(here) if marked else []
+            say(_greeting(here))
             _introduce(chosen, segments, marked)
             if page:
-                programs = processes.with_page(here, programs, given)
-                if programs[-1].name != processes.PAGE:
+                programs = processes.with_page(here, programs, with_page_ports(given, here))
+                if programs[-1].module != processes.PAGE:
                     say(f"no web page: {adding('web-dashboard')}", style="yellow")
             run(here, programs, chosen)
     except (SettingsError, ValidationError) as error:
         fail(complaint(error))
+
+
+def _greeting(here: ServiceSettings) -> str:
+    """Return the first line that is printed: what starts where, and a command to try."""
+    each = [own.sensor for own in here.of_each_sensor]
+    several = len(each) > 1
+    what = f"sensors {', '.join(each)}" if several else f"sensor {here.sensor}"
+    command = f"actum watch --sensor {each[0]}" if several else "actum watch"
+    return f"actum starts on {here.connect}, {what}: try '{command}'; Ctrl-C ends"
 
 
 def _introduce(model: ModelInUse, segments: str, marked: bool) -> None:

@@ -39,10 +39,10 @@ console = LiteralConsole(highlight=False, emoji=False, width=None if sys.stdout.
 errors = LiteralConsole(stderr=True, highlight=False, emoji=False)
 
 
-def settings() -> ServiceSettings:
+def settings(kind: type[ServiceSettings] = ServiceSettings) -> ServiceSettings:
     """Read the connection from the environment or the configuration file, or fail saying what cannot be used."""
     try:
-        return ServiceSettings()
+        return kind()
     except ValueError as error:
         fail(complaint(error))
 
@@ -67,9 +67,9 @@ def failing_on(*errors: type[Exception]) -> Iterator[None]:
         fail(str(error))
 
 
-def connect(wait_s: float = 5.0) -> Client:
+def connect(wait_s: float = 5.0, here: ServiceSettings | None = None) -> Client:
     """Open a session with the router, or fail saying why there is none and how to get one."""
-    here = settings()
+    here = here or settings()
     try:
         return Client(here, wait_s)
     except RouterUnreachableError as error:

@@ -40,16 +40,17 @@ def examine(client: Client) -> Examination:
     names = [*EXPECTED, *sorted({*heard.tokens, *heard.statuses} - set(EXPECTED))]
     problems = (*partly_denied(heard), *stream_checks.problems(heard.infos, heard.statuses, heard.streams))
     clocks = clock_remarks(clock_offsets(heard.answers))
-    facts = (*stream_checks.hops(heard.streams), *who_serves_whom(heard))
+    facts = (*stream_checks.hops(heard.streams), *who_serves(heard))
     return Examination([finding(name, heard) for name in names], problems, tuple(clocks), facts)
 
 
-def who_serves_whom(heard: Heard) -> Iterator[str]:
-    """Yield a line for each service that several processes share, and each sensor."""
-    for (service, sensor), shared in sorted(heard.shared.items()):
-        others = sorted(set(shared.members) - set(shared.serving))
+def who_serves(heard: Heard) -> Iterator[str]:
+    """Yield a line for each service whose sensor several processes share."""
+    for service, members in sorted(heard.members.items()):
+        serving = heard.tokens.get(service, [])
+        others = sorted(set(members) - set(serving))
         standing_by = f"; standing by: {', '.join(others)}" if others else ""
-        yield f"{service} of {sensor}: served by {', '.join(shared.serving) or 'nobody yet'}{standing_by}"
+        yield f"{service}, which is shared: {', '.join(serving) or 'nobody yet'} serves this sensor{standing_by}"
 
 
 def everything_denied(heard: Heard, client: Client) -> str | None:

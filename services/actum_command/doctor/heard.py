@@ -5,6 +5,7 @@ import socket
 import threading
 import time
 from collections import defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from actum import keys
@@ -68,19 +69,6 @@ class Watched:
         return len(self.arrivals_ns) >= FEWEST and self.arrivals_ns[-1] - self.arrivals_ns[0] >= FROZEN_NS
 
 
-@dataclass
-class Shared:
-    """A service of a sensor that several processes share.
-
-    Attributes:
-        serving: the instances that run; one, unless they change just now.
-        members: all instances that share the sensor.
-    """
-
-    serving: list[str] = field(default_factory=list)
-    members: list[str] = field(default_factory=list)
-
-
 @dataclass(frozen=True)
 class Heard:
     """What was heard of a sensor.
@@ -90,14 +78,14 @@ class Heard:
         answers: what services answered, several times each.
         statuses: the statuses of each service, in the order they came.
         streams: skeletons, postures, objects and partial actions, and images where the sensor is on this host.
-        shared: who serves whom, by service and sensor, of all sensors.
+        members: the instances that share the sensor, by service.
     """
 
     tokens: dict[str, list[str]]
     answers: list[Answer]
     statuses: dict[str, list[Status]]
     streams: dict[Topic, Watched]
-    shared: dict[tuple[str, str], Shared] = field(default_factory=dict)
+    members: dict[str, list[str]] = field(default_factory=dict)
 
     @property
     def infos(self) -> list[Info]:
@@ -116,22 +104,17 @@ def hear(client: Client) -> Heard:
     if socket.gethostname() in hosts:
         topics.append(keys.COLOR)  # elsewhere they would cross the network for nothing but this
     statuses, streams = _listened(client, topics)
-    tokens: defaultdict[str, list[str]] = defaultdict(list)
-    for key in client.alive():
-        service, instance = key.split("/")[-2:]
-        tokens[service].append(instance)
-    return Heard(dict(tokens), answers, statuses, streams, shared(client.sharing()))
+    return Heard(_by_service(client.alive()), answers, statuses, streams, _by_service(client.members()))
 
 
-def shared(tokens: list[str]) -> dict[tuple[str, str], Shared]:
-    """Return who serves whom by the liveliness tokens of all sensors; services that nobody shares are left out."""
-    found: defaultdict[tuple[str, str], Shared] = defaultdict(Shared)
+def _by_service(tokens: Iterable[str]) -> dict[str, list[str]]:
+    """Return the instances whose liveliness tokens these are, by service."""
+    found: defaultdict[str, list[str]] = defaultdict(list)
     for token in tokens:
-        claim, (sensor, _, service) = keys.claim_of(token), token.split("/")[1:4]
+        claim = keys.claim_of(token)
         if claim is not None:
-            each = found[service, sensor]
-            (each.members if claim.role == "member" else each.serving).append(claim.instance)
-    return {name: each for name, each in found.items() if each.members}
+            found[token.split("/")[3]].append(claim.instance)
+    return dict(found)
 
 
 def _listened(client: Client, topics: list[Topic]) -> tuple[dict[str, list[Status]], dict[Topic, Watched]]:

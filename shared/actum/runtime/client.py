@@ -5,7 +5,6 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from itertools import chain
 from types import TracebackType
 from typing import Any, Self, TypeVar
 
@@ -154,13 +153,14 @@ class Client:
 
     def alive(self) -> list[str]:
         """List the liveliness tokens of this sensor's services."""
-        replies = self._session.liveliness().get(f"{keys.BASE}/{self.sensor}/alive/**", timeout=1.0)
-        return sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
+        return self._tokens("alive")
 
-    def sharing(self) -> list[str]:
-        """List the liveliness tokens of all sensors' services that several processes share, and of those that run."""
-        found = [f"{keys.BASE}/*/{role}/**" for role in ("alive", "member")]
-        replies = chain.from_iterable(self._session.liveliness().get(tokens, timeout=1.0) for tokens in found)
+    def members(self) -> list[str]:
+        """List the liveliness tokens of the instances that share this sensor."""
+        return self._tokens("member")
+
+    def _tokens(self, role: str) -> list[str]:
+        replies = self._session.liveliness().get(f"{keys.BASE}/{self.sensor}/{role}/**", timeout=1.0)
         return sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
 
     def infos(self) -> list[Info]:

@@ -26,7 +26,7 @@ from actum.runtime.several import Served, end_at_bugs, name_sensors, serve_all
 from actum.runtime.sharing import SharingService
 from actum.runtime.step_service import NodeService
 from actum.runtime.stopping import end_with_parent, stop_on_signals
-from actum.settings import NodeSettings, ServiceSettings, SettingsError, complaint
+from actum.settings import ServiceSettings, SettingsError, SharedSettings, complaint
 
 log = logging.getLogger("actum")
 S = TypeVar("S", bound=ServiceSettings)
@@ -98,11 +98,10 @@ def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str]
     """
 
     def of_each_sensor(settings: S) -> list[tuple[Node, S]]:
-        each = settings.of_each_sensor if isinstance(settings, NodeSettings) else [settings]
-        return [(build(own), own) for own in each]
+        return [(build(own), own) for own in settings.of_each_sensor]
 
     settings, nodes = configured(settings_type, of_each_sensor, flags)
-    shares = isinstance(settings, NodeSettings) and settings.share
+    shares = isinstance(settings, SharedSettings) and settings.share
     live([_sharing(node, build, own) if shares else NodeService(node, own) for node, own in nodes], settings)
 
 

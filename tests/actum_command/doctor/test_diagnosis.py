@@ -1,5 +1,6 @@
 """What `actum doctor` takes for wrong, and that it shows what services say whatever they say."""
 
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -75,7 +76,7 @@ class System:
         for message in self._statuses if "status" in pattern else []:
             take(Received(keys.key_of(message), message, None, 0))
 
-    def sharing(self) -> list[str]:
+    def members(self) -> list[str]:
         return []
 
     def alive(self) -> list[str]:
@@ -101,9 +102,20 @@ def examined(**fields: Any) -> Finding:
 
 
 def diagnosed(monkeypatch: pytest.MonkeyPatch, system: System) -> tuple[int, str]:
-    monkeypatch.setattr(doctor_command, "connect", lambda: system)
+    monkeypatch.setattr(doctor_command, "connect", lambda here: system)
     ended = CliRunner().invoke(__main__.app, ["doctor"])
     return ended.exit_code, ended.output
+
+
+def test_each_of_several_sensors_is_checked_and_a_problem_of_one_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    systems = {"left": System(status("som_classifier")), "right": System(status("som_classifier"), version="0.0.1")}
+    monkeypatch.setattr(doctor_command, "connect", lambda here: systems[here.sensor])
+    monkeypatch.setenv("ACTUM_SENSOR", "window")
+    ended = CliRunner().invoke(__main__.app, ["doctor", "--sensors", "left,right"])
+    _, left, right = re.split("^sensor (?:left|right)$", ended.output, flags=re.MULTILINE)
+    assert ended.exit_code == 1
+    assert "som_classifier" in left and "som_classifier is version" not in left
+    assert "som_classifier is version 0.0.1" in right and "all services are there" not in right
 
 
 def test_a_system_that_is_well_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:

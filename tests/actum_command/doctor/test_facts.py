@@ -1,25 +1,19 @@
 """What doctor prints that is no problem: who serves whom, and how long a hop takes."""
 
 from actum import keys
-from actum_command.doctor.diagnosis import who_serves_whom
-from actum_command.doctor.heard import Heard, Watched, shared
+from actum_command.doctor.diagnosis import who_serves
+from actum_command.doctor.heard import Heard, Watched
 from actum_command.doctor.stream_checks import FEWEST_PAIRS, hops
 
 MILLISECOND_NS = 1_000_000
 FRAME_NS = 33 * MILLISECOND_NS
 
 
-def member(sensor: str, instance: str) -> str:
-    return keys.claim_key(keys.Claim("member", instance, "ab12"), sensor, "som_classifier")
-
-
-def test_each_shared_sensor_has_a_line_with_who_serves_it_and_who_stands_by() -> None:
-    tokens = [member(sensor, name) for sensor in ("door", "window") for name in ("north", "south")]
-    tokens += [keys.alive("door", "som_classifier", "south"), keys.alive("door", "action_fusion", "alone")]
-    lines = list(who_serves_whom(Heard({}, [], {}, {}, shared(tokens))))
-    assert lines == [
-        "som_classifier of door: served by south; standing by: north",
-        "som_classifier of window: served by nobody yet; standing by: north, south",
+def test_a_line_says_who_serves_a_shared_sensor_and_who_stands_by() -> None:
+    tokens, members = {"som_classifier": ["south"]}, {"som_classifier": ["south", "north"], "action_fusion": ["north"]}
+    assert list(who_serves(Heard(tokens, [], {}, {}, members))) == [
+        "action_fusion, which is shared: nobody yet serves this sensor; standing by: north",
+        "som_classifier, which is shared: south serves this sensor; standing by: north",
     ]
 
 
