@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum import geometry
-from actum.messages import Action, Objects, Posture, TrackedObject
+from actum.messages import Action, Message, Objects, Posture, TrackedObject
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 
@@ -23,6 +23,7 @@ Path = Callable[[float], Place]
 SENSOR = "kinect0"
 START_NS = 100 * SECOND_NS
 FRAME_NS = 33_333_333
+LATER_S = 30.0
 NAMES = {1: "cup", 2: "box", 3: "book"}
 HEAD: Place = (0.0, 0.75, 0.05)
 REST_RIGHT: Place = (0.2, 0.1, 0.2)
@@ -187,3 +188,11 @@ def acting_on(
 def _times(start_s: float, end_s: float, offset_s: float) -> list[float]:
     count = round((end_s - start_s) * SECOND_NS / FRAME_NS)
     return [start_s + offset_s + i * FRAME_NS / SECOND_NS for i in range(count)]
+
+
+def later(message: Message, segment_id: str = "later") -> Message:
+    """The same some seconds on, as another segment."""
+    shift_ns = round(LATER_S * SECOND_NS)
+    stamps = {name: getattr(message, name) + shift_ns for name in ("start_ns", "end_ns") if hasattr(message, name)}
+    named = {"segment_id": segment_id} if hasattr(message, "segment_id") else {}
+    return message.model_copy(update=stamps | named | {"seq": None, "stamp_ns": message.stamp_ns + shift_ns})

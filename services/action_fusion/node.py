@@ -30,6 +30,9 @@ REMEMBERED = 10_000
 MOST_PENDING = 64
 """Most actions that wait: as many as may be marked at once, twice."""
 
+ONGOING_NS = 2 * SECOND_NS
+"""How long after a partial action its segment counts as going on (ns): the next comes with the next frame."""
+
 MOST_SIGHTINGS = 4_000
 """Most messages of objects kept: the time that they count, at 50 a second."""
 
@@ -73,6 +76,8 @@ class ActionFusion:
         self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
         self._before = Before()
         self._flows = {Posture: Flow(), Objects: Flow()}
+        self._ongoing: dict[str, int] = {}
+        self._now_ns = 0
 
     def remember(self, answers: Sequence[Message]) -> None:
         """Take the events that were put before this process was there: it puts no others for their segments."""
@@ -82,8 +87,8 @@ class ActionFusion:
 
     @property
     def is_busy(self) -> bool:
-        """Whether an action waits for its samples."""
-        return bool(self._pending)
+        """Whether an action waits for its samples, or is going on."""
+        return bool(self._pending) or any(self._now_ns - seen_ns < ONGOING_NS for seen_ns in self._ongoing.values())
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:
@@ -99,7 +104,10 @@ class ActionFusion:
             case Objects():
                 return self._take(self._objects, objects_sample(self._known.known(message), self.counters), "objects")
             case Action(final=True):
+                self._ongoing.pop(message.segment_id, None)
                 return self._action(message)
+            case Action():
+                self._ongoing[message.segment_id] = self._now_ns
             case Tick():
                 return self._tick(message)
         return []
@@ -166,6 +174,8 @@ class ActionFusion:
 
     def _tick(self, tick: Tick) -> list[Event]:
         """Return the events of actions that have waited long enough, from the samples received so far."""
+        self._now_ns = tick.monotonic_ns
+        self._ongoing = {name: ns for name, ns in self._ongoing.items() if self._now_ns - ns < ONGOING_NS}
         for flow in self._flows.values():
             flow.tick(tick.monotonic_ns)
         events = []

@@ -101,3 +101,18 @@ def test_objects_that_stand_still_are_waited_for_and_read_when_they_come(node: A
     late = [m for m in PUSH.sightings() if m.stamp_ns > at(1.0)]
     (event,) = events_of(node, *late)
     assert event.result == "0.20 m away"
+
+
+def test_the_fusion_is_busy_while_an_action_goes_on_or_waits(node: ActionFusion) -> None:
+    """Then no other process takes its place: it would lack the samples of before."""
+    ticked(node, 0.0, 1.0)
+    assert not node.is_busy
+    list(node.handle(action("push", final=False)))
+    assert node.is_busy
+    ticked(node, 1.0, 4.0)
+    assert not node.is_busy, "nothing more was said of it"
+    list(node.handle(action("push", final=False)))
+    list(node.handle(action("push")))
+    assert node.is_busy, "it waits for its samples"
+    events_of(node, *PUSH.postures(), *PUSH.sightings())
+    assert not node.is_busy

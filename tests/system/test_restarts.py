@@ -18,11 +18,10 @@ from actum.runtime import Client, Listening
 from fusion_with_short_history import HISTORY_S
 from live import Running, System, collect, wait_until
 from people import marks, postures
-from scenes import acting_on, action, at
+from scenes import acting_on, action, at, later
 
 PUSH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65))
 SCENE = [*PUSH.postures(), *PUSH.sightings(), action("push")]
-LATER_S = 30.0
 LONG_S = 60.0
 FUSION = Path(__file__).parents[1] / "fusion_with_short_history.py"
 pytestmark = pytest.mark.system
@@ -32,14 +31,6 @@ def put_all(client: Client, messages: Sequence[Message]) -> None:
     assert client.wait_for_subscriber(keys.OBJECTS, 10.0)
     for message in messages:
         client.put(message)
-
-
-def later(message: Message, segment_id: str = "later") -> Message:
-    """The same some seconds on, as another segment."""
-    shift_ns = round(LATER_S * SECOND_NS)
-    stamps = {name: getattr(message, name) + shift_ns for name in ("start_ns", "end_ns") if hasattr(message, name)}
-    named = {"segment_id": segment_id} if hasattr(message, "segment_id") else {}
-    return message.model_copy(update=stamps | named | {"seq": None, "stamp_ns": message.stamp_ns + shift_ns})
 
 
 def wait_until_heard(client: Client, *topics: keys.Topic) -> None:

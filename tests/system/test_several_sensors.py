@@ -19,6 +19,7 @@ from som_classifier.model_loading import WatchedModel, load_model
 
 pytestmark = pytest.mark.system
 SENSORS = ("left", "right")
+TESTS = Path(__file__).parents[1]
 
 
 def frames(sensor: str) -> list[Skeleton]:
@@ -114,6 +115,16 @@ def test_a_model_that_is_put_into_use_at_one_sensor_is_that_of_all(running: Syst
 
         for client in (left, right):
             wait_until(lambda client=client: used(client), f"the model is in use at {client.sensor}")
+
+
+@pytest.mark.parametrize("sensor", ["left", "left,right"])
+@pytest.mark.parametrize("flags", [(), ("--share",)])
+def test_a_bug_in_any_turn_ends_the_process_with_code_1(running: System, sensor: str, flags: tuple[str, ...]) -> None:
+    running.start_router()
+    service = running.start_script(TESTS / "failing_at_ticks.py", "--sensor", sensor, *flags)
+    assert service.process.wait(timeout=PATIENCE_S) == 1
+    assert "the third tick" in service.said()
+    assert "report the bug" in service.said()
 
 
 def test_nodes_that_read_one_file_share_the_model(tmp_path: Path) -> None:

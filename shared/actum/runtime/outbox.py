@@ -1,5 +1,6 @@
 """Puts messages on their keys, numbered, with the quality of service that the table of topics gives."""
 
+import secrets
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Iterable
@@ -20,6 +21,8 @@ HEARTBEAT_S = 0.5
 
 Once: who subscribes later would take all before a number that is repeated for ever for lost, and request it.
 """
+ORIGIN_BYTES = 8
+"""Bytes of the random name of an outbox: readers follow the numbers of each outbox by itself."""
 MOST_PUBLISHERS = 256
 """Most open publishers: agents come and go with new numbers, and the publisher silent for longest makes room."""
 
@@ -43,7 +46,7 @@ class Outbox:
     """One publisher per key and manner, declared when first needed, `MOST_PUBLISHERS` at the most."""
 
     def __init__(self, session: zenoh.Session) -> None:
-        self._session, self._origin = session, str(session.zid())
+        self._session, self._origin = session, secrets.token_hex(ORIGIN_BYTES)
         self._keep: Callable[[Frame], None] | None = None
         self._numbering = Numbering()
         self._publishers: OrderedDict[tuple[str, Manner], Publisher] = OrderedDict()

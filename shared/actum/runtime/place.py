@@ -109,7 +109,8 @@ class Place:
 
     def lost_to(self) -> str | None:
         """Return the instance that this one is to make room for, None where it may go on."""
-        return self._loses_to(self._others() or ())
+        others = self._others()
+        return None if others is None else self._loses_to(others)
 
     def _loses_to(self, others: Sequence[keys.Claim]) -> str | None:
         """Return a successor, or of two instances that run the first by name."""

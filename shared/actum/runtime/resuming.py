@@ -8,7 +8,7 @@ from collections import OrderedDict
 
 from actum.atomic_file import PRIVATE_FOLDER
 from actum.codec import DecodeError, Frame, decode
-from actum.messages import Message
+from actum.messages import Action, Event, Message
 from actum.node import Counters, Remembering
 from actum.runtime.inbox import HISTORY_S, RESUMED_FRAMES_S, RESUMED_S, Reach
 from actum.runtime.journal import Journal, WrittenAnswer
@@ -17,6 +17,8 @@ from actum.settings import ServiceSettings, SettingsError
 
 log = logging.getLogger("actum")
 
+Segment = tuple[str, str, int | None, int | None] | None
+"""What tells a segment from others: session, id, start and end; None for what is no answer."""
 KEPT_S = 2 * RESUMED_S
 """How old an answer is forgotten (s): marks as old are not requested."""
 MOST_HEARD = 1024
@@ -54,6 +56,7 @@ class HeardAnswers:
     def __init__(self) -> None:
         self._began_s = time.monotonic()
         self._answers: OrderedDict[bytes, WrittenAnswer] = OrderedDict()
+        self._elsewhere: OrderedDict[Segment, bytes] = OrderedDict()
         self._lock = threading.Lock()
         self.is_new = True
 
@@ -61,7 +64,7 @@ class HeardAnswers:
     def answers(self) -> list[WrittenAnswer]:
         """The answers, the oldest first."""
         with self._lock:
-            return list(self._answers.values())
+            return [answer for answer in self._answers.values() if answer.age_s <= KEPT_S]
 
     @property
     def age_s(self) -> float:
@@ -69,18 +72,46 @@ class HeardAnswers:
         return time.monotonic() - self._began_s
 
     def add(self, frame: Frame) -> None:
-        """Keep an answer that is about to be put, or was heard, once."""
+        """Keep an answer that is about to be put."""
         with self._lock:
-            self._answers.setdefault(frame.payload, WrittenAnswer(time.time_ns(), frame))
-            oldest = next(iter(self._answers.values()))
-            if oldest.age_s > KEPT_S or len(self._answers) > MOST_HEARD:
-                self._answers.popitem(last=False)
+            self._keep(WrittenAnswer(time.time_ns(), frame))
+
+    def hear(self, answer: WrittenAnswer, message: Message) -> None:
+        """Keep an answer that was heard, unless this process has put it itself."""
+        with self._lock:
+            if answer.frame.payload not in self._answers:
+                self._keep(answer)
+                self._elsewhere[_segment_of(message)] = answer.frame.payload
+
+    def is_answered_elsewhere(self, message: Message) -> bool:
+        """Tell whether another process has answered the segment of an answer."""
+        with self._lock:
+            return _segment_of(message) in self._elsewhere
 
     def store(self) -> None:
         """Do nothing."""
 
     def close(self) -> None:
         """Do nothing: it goes on while another process serves the sensor."""
+
+    def _keep(self, answer: WrittenAnswer) -> None:
+        """Keep an answer, and forget what is too old or too much."""
+        self._answers[answer.frame.payload] = answer
+        while len(self._answers) > MOST_HEARD or next(iter(self._answers.values())).age_s > KEPT_S:
+            self._answers.popitem(last=False)
+            while self._elsewhere and next(iter(self._elsewhere.values())) not in self._answers:
+                self._elsewhere.popitem(last=False)
+            if not self._answers:
+                return
+
+
+def _segment_of(answer: Message) -> Segment:
+    """Return what tells the segment of a final action or an event from all others; of another message, itself."""
+    match answer:
+        case Action(final=True) | Event():
+            return answer.session_id, answer.segment_id, answer.start_ns, answer.end_ns
+        case _:
+            return None
 
 
 class Resumption:
@@ -117,6 +148,14 @@ class Resumption:
         if vacant_s < math.inf:
             return Reach(recent_s, RESUMED_S, depth=None)
         return Reach(min(self._journal.age_s + HISTORY_S, RESUMED_S), RESUMED_S, RESUMED_FRAMES_S, depth=None)
+
+    def admits(self, output: Message) -> bool:
+        """Tell whether an output may be put: not an answer to what another process has answered; that is counted."""
+        journal = self._journal
+        if not isinstance(journal, HeardAnswers) or not journal.is_answered_elsewhere(output):
+            return True
+        self._counters.counts["answered_elsewhere"] += 1
+        return False
 
     def store(self) -> None:
         """Have stored on the disk what was written.

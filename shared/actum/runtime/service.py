@@ -63,6 +63,8 @@ class Service(ABC):
         reporting.start()
         try:
             self._work(session, Outbox(session), stop, place.vacant_s)
+        except Exception as error:
+            self.end_at_bug("while the service worked", error, stop)
         finally:
             self.has_ended = True
             stop.set()

@@ -5,17 +5,19 @@ segments are answered, and requests the marks and frames of all others.
 """
 
 import logging
+import math
 import threading
+import time
 from collections.abc import Callable
 
 import zenoh
 
-from actum import keys
 from actum.codec import DecodeError, Frame, decode
 from actum.health import HealthFile
 from actum.messages import Action
-from actum.node import Node, Remembering
-from actum.runtime.inbox import RESUMED_S, Reach, Subscriber, subscribe_recovering
+from actum.node import SECOND_NS, Node, Remembering
+from actum.runtime.inbox import RESUMED_S, Inbox, Reach
+from actum.runtime.journal import WrittenAnswer
 from actum.runtime.place import PlaceTakenError
 from actum.runtime.rendezvous import SharedPlace
 from actum.runtime.resuming import HeardAnswers, Resumption
@@ -28,24 +30,27 @@ log = logging.getLogger("actum")
 
 LOOK_S = 0.2
 """Interval (s) between two looks at who serves the sensor: a process that died is replaced within ten of them."""
+STARTING_S = 5.0
+"""How long (s) a turn may take to begin, before the process counts as unhealthy."""
 
 
 class SharingService:
     """Stands by for a sensor, and serves it by a node of its own at each turn.
 
     Args:
-        node: the node of the first turn.
-        build: makes those of later turns.
+        node: by which the first turn begins, unless it comes late.
+        build: makes the nodes of the turns.
         settings: of the sensor.
     """
 
     def __init__(self, node: Node, build: Callable[[], Node], settings: ServiceSettings) -> None:
         self.name, self.thread_name = node.name, settings.sensor
         self.is_healthy_beside: Callable[[], bool] = lambda: True
+        self.has_ended = False
         self._build, self._settings = build, settings
         self._heard = HeardAnswers()
         self._answers = node.answers if isinstance(node, Remembering) else None
-        self._is_serving = False
+        self._begun_s = math.inf
         self._prepare(node)
 
     @property
@@ -54,14 +59,9 @@ class SharingService:
         return self._service.failed
 
     @property
-    def has_ended(self) -> bool:
-        """Whether it was stopped while it served."""
-        return self._service.has_ended
-
-    @property
     def is_healthy(self) -> bool:
         """Whether it works, if this is its turn."""
-        return self._service.is_healthy or not self._is_serving
+        return self._service.is_healthy or time.monotonic() - self._begun_s < STARTING_S
 
     def introduce(self) -> None:
         """Log any problem that there is already."""
@@ -71,60 +71,55 @@ class SharingService:
         """Log a bug, and stop."""
         self._service.end_at_bug(where, error, stop)
 
-    def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
+    def serve(self, session: zenoh.Session, stop: threading.Event, _settling_s: float) -> None:
         """Stand by until stopped, and serve the sensor at each turn."""
         place = SharedPlace(session, self._settings, self.name, lambda: self._service.is_busy)
         health_file = HealthFile(self._settings.health_file)
-        listening = None if self._answers is None else self._listen(session, self._answers)
+        listening = self._listen(session)
         place.join()
         try:
             while not (wait_for(stop, LOOK_S) or self.failed):
                 health_file.write(self.is_healthy_beside() and connected(session))
                 if place.is_this_ones_turn():
-                    self._take_turn(place, session, stop, settling_s)
+                    self._take_turn(place, session, stop)
         finally:
             place.resign()
-            if listening is not None:
-                listening.undeclare()
+            listening.close()
+        self.has_ended = True
 
-    def _take_turn(self, place: SharedPlace, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
+    def _take_turn(self, place: SharedPlace, session: zenoh.Session, stop: threading.Event) -> None:
         """Serve until stopped, or until the sensor is another process's."""
+        self._prepare(self._build())  # one that has stood by may be of an older model
         try:
-            if not place.claim(stop, settling_s):
+            if not place.claim(stop, place.settling_s):
                 return
         except PlaceTakenError:  # another process was faster
             return
         log.info("this instance now serves sensor %s", self._settings.sensor)
-        self._heard.is_new = self._heard.is_new and not place.has_been_held
+        self._heard.is_new = self._heard.is_new and not (place.has_been_held or self._heard.answers)
         turn_ends = threading.Event()
         given, name = (place, session, turn_ends), f"{self.thread_name} turn"
         turn = threading.Thread(target=self._service.hold, args=given, name=name)
-        self._is_serving = True
+        self._begun_s = time.monotonic()
         turn.start()
         while turn.is_alive() and not wait_for(stop, LOOK_S):
             pass
         turn_ends.set()
         turn.join()
-        self._is_serving, self._heard.is_new = False, False
-        if not (stop.is_set() or self.failed):
-            self._prepare(self._build())
+        self._begun_s, self._heard.is_new = math.inf, False
 
     def _prepare(self, node: Node) -> None:
         """Make the service of the next turn: its answers are kept beside those that are heard."""
         resumption = Resumption(node, self._heard, node.counters) if isinstance(node, Remembering) else None
         self._service = NodeService(node, self._settings, resumption)
+        self._service.is_healthy_beside = self.is_healthy_beside
 
-    def _listen(self, session: zenoh.Session, answers: keys.Topic) -> Subscriber:
-        """Keep the answers that any process has put lately and will put."""
-        lately = Reach(requested_s=RESUMED_S, depth=None).history(answers)
-        subscriber = subscribe_recovering(session, keys.pattern(answers, self._settings.sensor), answers.ring, lately)
-
-        def keep() -> None:
-            for sample in subscriber:
-                self._keep(sample)
-
-        threading.Thread(target=keep, name=f"{self.thread_name} listening", daemon=True).start()
-        return subscriber
+    def _listen(self, session: zenoh.Session) -> Inbox:
+        """Keep the answers that any process has put lately and will put; of a service without answers, none."""
+        lately = Reach(RESUMED_S, RESUMED_S, depth=None)
+        inbox = Inbox(session, () if self._answers is None else (self._answers,), self._settings.sensor, lately)
+        inbox.start(self._keep)
+        return inbox
 
     def _keep(self, sample: zenoh.Sample) -> None:
         """Keep an answer; a partial action is none, and what cannot be decoded the serving process counts."""
@@ -133,6 +128,10 @@ class SharingService:
             message = decode(key, payload, encoding)
         except DecodeError:
             return
-        if not isinstance(message, Action) or message.final:
-            attachment = b"" if sample.attachment is None else sample.attachment.to_bytes()
-            self._heard.add(Frame(key, payload, encoding, attachment))
+        if isinstance(message, Action) and not message.final:
+            return
+        attachment = b"" if sample.attachment is None else sample.attachment.to_bytes()
+        given_ns = time.time_ns()
+        if sample.timestamp is not None:
+            given_ns = round(sample.timestamp.get_time().timestamp() * SECOND_NS)
+        self._heard.hear(WrittenAnswer(given_ns, Frame(key, payload, encoding, attachment)), message)

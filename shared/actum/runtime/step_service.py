@@ -123,11 +123,12 @@ class NodeService(StepService):
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
         with self._lock:
             for output in self._node.handle(message):
-                outbox.put(output)
+                if self._resumption is None or self._resumption.admits(output):
+                    outbox.put(output)
 
 
 def _origin(sample: zenoh.Sample) -> str:
-    """Return the id of the session that put a sample: from its attachment, else from its Zenoh timestamp; else "".
+    """Return who put a sample: the outbox that its attachment names, else the session of its Zenoh timestamp; else "".
 
     The timestamp alone would not do: a router puts one of its own in place of that of a host whose clock is ahead.
     """
