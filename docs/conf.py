@@ -44,6 +44,7 @@ RESULTS = {
     "The paper: what was tried": "benchmarks/paper/README",
     "Marker tracker": "benchmarks/tracker/results",
     "Latency": "benchmarks/latency/results",
+    "Many sensors": "benchmarks/many/results",
     "Latency and speed: what was tried": "benchmarks/latency/README",
     "Maps": "benchmarks/som",
 }
