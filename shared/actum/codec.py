@@ -1,12 +1,11 @@
 """Encodes and decodes messages: a msgpack map, an encoding that names the schema, a small attachment."""
 
 import re
-from dataclasses import dataclass
-from functools import lru_cache
-from typing import Any
+from functools import cache, lru_cache
+from typing import Any, NamedTuple
 
 import msgpack
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from actum import keys
 from actum.messages import Message
@@ -31,8 +30,7 @@ class DecodeError(ValueError):
         self.kind = kind
 
 
-@dataclass(frozen=True)
-class Frame:
+class Frame(NamedTuple):
     """An encoded message, with the key to put it on."""
 
     key: str
@@ -57,9 +55,25 @@ def encode(message: Message, origin: str = "", seq: int | None = None) -> Frame:
     The attachment repeats `[version, seq, stamp_ns]` and adds who puts it, if that is given.
     """
     number = message.seq if seq is None else seq
-    payload = msgpack.packb(message.model_dump() | {"seq": number}, use_bin_type=True)
+    payload = msgpack.packb(vars(message) | {"seq": number}, default=_fields_of, use_bin_type=True)
     attachment = msgpack.packb([message.VERSION, number, message.stamp_ns, *filter(None, [origin])])
-    return Frame(keys.key_of(message), payload, f"application/msgpack;{schema_name(message)}", attachment)
+    return Frame(keys.key_of(message), payload, _encoding_of(type(message)), attachment)
+
+
+@cache
+def _encoding_of(kind: type[Message]) -> str:
+    return f"application/msgpack;{schema_name(kind)}"
+
+
+def _fields_of(part: Any) -> dict[str, Any]:
+    """Return the fields of a part of a message; `model_dump` would copy the whole message first.
+
+    Raises:
+        TypeError: it is neither a number, text or container nor a part of a message.
+    """
+    if isinstance(part, BaseModel):
+        return vars(part)
+    raise TypeError(f"a message holds a {type(part).__name__}, which cannot be packed")
 
 
 def origin_of(attachment: bytes) -> str:

@@ -210,14 +210,19 @@ def parse(text: str) -> Address:
 
 def address_of(message: m.Message) -> Address:
     """Return the parsed form of the key that a message is put on."""
-    if isinstance(message, m.Image):
-        return Address(DEPTH if message.format == "depth16_mm" else COLOR, message.sensor, None)
-    topic = _BY_SCHEMA[message.SCHEMA]
-    named_by = _NAMED_BY.get(topic)
-    return Address(topic, message.sensor, None if named_by is None else str(getattr(message, named_by)))
+    topic, name = _topic_and_name(message)
+    return Address(topic, message.sensor, None if name is None else str(name))
 
 
 def key_of(message: m.Message) -> str:
     """Build the key a message is put on."""
-    address = address_of(message)
-    return key(address.topic, address.sensor, address.name)
+    topic, name = _topic_and_name(message)
+    return key(topic, message.sensor, name)
+
+
+def _topic_and_name(message: m.Message) -> tuple[Topic, str | int | None]:
+    if isinstance(message, m.Image):
+        return DEPTH if message.format == "depth16_mm" else COLOR, None
+    topic = _BY_SCHEMA[message.SCHEMA]
+    named_by = _NAMED_BY.get(topic)
+    return topic, None if named_by is None else getattr(message, named_by)
