@@ -377,22 +377,72 @@ static void apply(const double *transform, const double *joints, double *out)
                 + transform[4 * row + 3];
 }
 
+/* Read a message's joints, a list of fifteen lists of three numbers, NaN where one is unknown (None). Return how many
+   are unknown, -1 where an error is set. */
+static int read_joints(PyObject *joints, double *out)
+{
+    int unknown = 0;
+    if (!PyList_Check(joints) || PyList_Size(joints) != JOINTS) {
+        PyErr_SetString(PyExc_ValueError, "the joints are not a list of fifteen");
+        return -1;
+    }
+    for (int joint = 0; joint < JOINTS; joint++) {
+        PyObject *point = PyList_GetItem(joints, joint);
+        int known = point != Py_None;
+        if (known && (!PyList_Check(point) || PyList_Size(point) != 3)) {
+            PyErr_SetString(PyExc_ValueError, "a joint is not a list of three numbers");
+            return -1;
+        }
+        unknown += !known;
+        for (int i = 0; i < 3; i++)
+            *out++ = known ? PyFloat_AsDouble(PyList_GetItem(point, i)) : NAN;
+    }
+    return PyErr_Occurred() ? -1 : unknown;
+}
+
+static PyObject *listed(const double *numbers, int count)
+{
+    PyObject *list = PyList_New(count);
+    for (int i = 0; list != NULL && i < count; i++) {
+        PyObject *number = PyFloat_FromDouble(numbers[i]);
+        if (number == NULL)
+            Py_CLEAR(list);
+        else
+            PyList_SetItem(list, i, number);
+    }
+    return list;
+}
+
+static PyObject *listed_joints(const double *joints)
+{
+    PyObject *list = PyList_New(JOINTS);
+    for (int joint = 0; list != NULL && joint < JOINTS; joint++) {
+        PyObject *point = listed(joints + 3 * joint, 3);
+        if (point == NULL)
+            Py_CLEAR(list);
+        else
+            PyList_SetItem(list, joint, point);
+    }
+    return list;
+}
+
 PyDoc_STRVAR(body_doc,
     "body(joints, parents, children, lengths_m, hips_torso, reach_m, bone_m, shortest_m, out) -> bool\n--\n\n"
-    "Write the joints with standard bones, the egocentric frame, and the joints in it, measured and with standard\n"
-    "bones, (45 + 16 + 45 + 45). False where a joint or bone is not usable.");
+    "Write a message's joints as they are and with standard bones, the egocentric frame, and both in it,\n"
+    "(45 + 45 + 16 + 45 + 45). False where a joint is unknown or, as a bone, not usable.");
 static PyObject *body(PyObject *module, PyObject *args)
 {
-    Py_buffer b[6];
+    PyObject *message;
+    Py_buffer b[5];
     double reach_m, bone_m, shortest_m, ego[16];
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*dddw*", &b[0], &b[1], &b[2], &b[3], &b[4], &reach_m, &bone_m, &shortest_m,
-                          &b[5]))
+    if (!PyArg_ParseTuple(args, "Oy*y*y*y*dddw*", &message, &b[0], &b[1], &b[2], &b[3], &reach_m, &bone_m, &shortest_m,
+                          &b[4]))
         return NULL;
-    const double *joints = b[0].buf, *lengths_m = b[3].buf;
-    const int32_t *parents = b[1].buf, *children = b[2].buf, *hips_torso = b[4].buf, torso = hips_torso[2];
-    double *scaled = b[5].buf, *frame = scaled + COORDINATES, *measured_ego = frame + 16;
-    double *scaled_ego = measured_ego + COORDINATES, from_torso[COORDINATES] = {0};
-    int usable = 1;
+    const double *lengths_m = b[2].buf;
+    const int32_t *parents = b[0].buf, *children = b[1].buf, *hips_torso = b[3].buf, torso = hips_torso[2];
+    double *joints = b[4].buf, *scaled = joints + COORDINATES, *frame = scaled + COORDINATES;
+    double *measured_ego = frame + 16, *scaled_ego = measured_ego + COORDINATES, from_torso[COORDINATES] = {0};
+    int usable = read_joints(message, joints) == 0;
     for (int i = 0; i < COORDINATES; i++)
         usable &= fabs(joints[i]) <= reach_m;
     for (int bone = 0; bone < JOINTS - 1; bone++) {
@@ -412,64 +462,135 @@ static PyObject *body(PyObject *module, PyObject *args)
         apply(frame, joints, measured_ego);
         apply(ego, scaled, scaled_ego);
     }
-    for (int n = 0; n < 6; n++)
+    for (int n = 0; n < 5; n++)
         PyBuffer_Release(&b[n]);
-    return PyBool_FromLong(usable);
+    return PyErr_Occurred() ? NULL : PyBool_FromLong(usable);
 }
 
-PyDoc_STRVAR(moved_doc,
-    "moved(joints, smooth, torso, gain, parts, motion)\n--\n\n"
-    "Advance the low-passed joints relative to the torso, and write each part's mean displacement, (5,).");
-static PyObject *moved(PyObject *module, PyObject *args)
+/* Turn points by a rotation (3, 3) as BLAS multiplies: each product after the first is added without rounding it. */
+static void turned(const double *rotation, const double *points, double *out)
 {
-    Py_buffer b[4];
-    int torso;
-    double gain;
-    if (!PyArg_ParseTuple(args, "y*w*idy*w*", &b[0], &b[1], &torso, &gain, &b[2], &b[3]))
-        return NULL;
-    const double *joints = b[0].buf;
-    const int32_t *part_of = b[2].buf;
-    double *smooth = b[1].buf, *motion = b[3].buf;
-    memset(motion, 0, PARTS * sizeof *motion);
-    for (int joint = 0; joint < JOINTS; joint++) {
-        double step[3];
-        for (int i = 0; i < 3; i++) {
-            step[i] = gain * (joints[3 * joint + i] - joints[3 * torso + i] - smooth[3 * joint + i]);
-            smooth[3 * joint + i] += step[i];
-        }
-        motion[part_of[joint]] += length3(step);
-    }
-    for (int part = 0; part < PARTS; part++)
-        motion[part] /= JOINTS / PARTS;
-    return released(b, 4);
+    for (int joint = 0; joint < JOINTS; joint++, points += 3)
+        for (int row = 0; row < 3; row++)
+            *out++ = fma(points[2], rotation[3 * row + 2], fma(points[1], rotation[3 * row + 1],
+                                                                points[0] * rotation[3 * row]));
 }
 
-PyDoc_STRVAR(left_doc,
-    "left(joints, rights, lefts, shortest_m) -> (x, z) or None\n--\n\n"
-    "Return the mean horizontal components of the unit vectors from right to left hip and shoulder; None where one is\n"
-    "too short.");
-static PyObject *left(PyObject *module, PyObject *args)
+/* The mean direction (x, z) from right to left hip and shoulder, of those that are long enough, as
+   heading.horizontal_left. */
+static void horizontal_left(const double *joints, const int32_t *pairs, double shortest, double *left)
 {
-    Py_buffer b[3];
-    double shortest_m, sum[3] = {0};
-    int known = 1;
-    if (!PyArg_ParseTuple(args, "y*y*y*d", &b[0], &b[1], &b[2], &shortest_m))
-        return NULL;
-    const double *joints = b[0].buf;
-    const int32_t *rights = b[1].buf, *lefts = b[2].buf;
+    double sum[3] = {0};
+    int known = 0;
     for (int pair = 0; pair < 2; pair++) {
         double across[3], unit[3];
         for (int i = 0; i < 3; i++)
-            across[i] = joints[3 * lefts[pair] + i] - joints[3 * rights[pair] + i];
-        known &= unit3(across, shortest_m, unit);
+            across[i] = joints[3 * pairs[2 + pair] + i] - joints[3 * pairs[pair] + i];
+        if (!unit3(across, shortest, unit))
+            continue;
+        known++;
         for (int i = 0; i < 3; i++)
             sum[i] += unit[i];
     }
-    for (int n = 0; n < 3; n++)
+    left[0] = known == 2 ? sum[0] / 2 : sum[0];
+    left[1] = known == 2 ? sum[2] / 2 : sum[2];
+}
+
+enum { SPAN, MEAN_X, MEAN_Z, VARIANCE, LEFT_X, LEFT_Z };
+enum { FIRST_S, TURNING_S, SHORTEST_MEAN, INFLATION, FACING_VARIANCE, FULL_TURN };
+
+/* Advance the state of a HeadingFilter, (6,), by the direction to the left, as HeadingFilter does. */
+static void advance_heading(double *state, const double *left, double elapsed_s, const double *tuned)
+{
+    if (elapsed_s <= 0) {
+        state[SPAN] = tuned[FIRST_S];
+        state[MEAN_X] = left[0];
+        state[MEAN_Z] = left[1];
+        state[VARIANCE] = 0.0;
+    } else {
+        state[SPAN] += elapsed_s;
+        double gain = 1.0 - exp(-elapsed_s / tuned[TURNING_S]), share = elapsed_s / state[SPAN];
+        double weight = share > gain ? share : gain;
+        state[MEAN_X] += weight * (left[0] - state[MEAN_X]);
+        state[MEAN_Z] += weight * (left[1] - state[MEAN_Z]);
+        if (hypot(left[0], left[1]) >= tuned[SHORTEST_MEAN]) {
+            double error_rad
+                = remainder(atan2(left[1], left[0]) - atan2(state[MEAN_Z], state[MEAN_X]), tuned[FULL_TURN]);
+            state[VARIANCE] += gain * (error_rad * error_rad - state[VARIANCE]);
+        }
+    }
+    if (hypot(state[MEAN_X], state[MEAN_Z]) >= tuned[SHORTEST_MEAN]) {
+        double seen_rad = atan2(state[MEAN_Z], state[MEAN_X]), facing = cos(seen_rad);
+        double variance = tuned[INFLATION] * state[VARIANCE];
+        double yaw_rad
+            = seen_rad * (1.0 - (facing > 0.0 ? facing : 0.0) * variance / (variance + tuned[FACING_VARIANCE]));
+        state[LEFT_X] = cos(yaw_rad);
+        state[LEFT_Z] = sin(yaw_rad);
+    }
+}
+
+/* Advance the low-passed joints relative to the torso, and write each part's mean displacement, as PartMotionFilter. */
+static void advance_motion(double *smooth, const double *joints, int torso, double gain, const int32_t *part_of, double *motion)
+{
+    int known[PARTS] = {0};
+    memset(motion, 0, PARTS * sizeof *motion);
+    for (int joint = 0; joint < JOINTS; joint++) {
+        double step[3], length;
+        for (int i = 0; i < 3; i++) {
+            double relative = joints[3 * joint + i] - joints[3 * torso + i];
+            step[i] = gain * (relative - smooth[3 * joint + i]);
+            smooth[3 * joint + i] = isnan(step[i]) ? relative : smooth[3 * joint + i] + step[i];
+        }
+        length = length3(step);
+        if (!isnan(length)) {
+            motion[part_of[joint]] += length;
+            known[part_of[joint]]++;
+        }
+    }
+    for (int part = 0; part < PARTS; part++)
+        motion[part] /= known[part] ? known[part] : 1;
+}
+
+PyDoc_STRVAR(posture_doc,
+    "posture(body, level, heading, elapsed_s, pairs, tuned, shortest_m, smooth, gain, torso, part_of)\n"
+    "--\n\n"
+    "Advance a person's filters by what `body` wrote, and return the lists of a posture: the joints in the egocentric\n"
+    "frame, measured and with standard bones, upright ones, that frame, and the motion of each part.");
+static PyObject *posture(PyObject *module, PyObject *args)
+{
+    Py_buffer b[7];
+    double elapsed_s, shortest_m, gain;
+    int torso;
+    if (!PyArg_ParseTuple(args, "y*z*w*dy*y*dw*diy*", &b[0], &b[1], &b[2], &elapsed_s, &b[3], &b[4], &shortest_m, &b[5],
+                          &gain, &torso, &b[6]))
+        return NULL;
+    const double *joints = b[0].buf, *scaled = joints + COORDINATES, *frame = scaled + COORDINATES;
+    const double *level = b[1].buf, *metric = joints;
+    double turned_metric[COORDINATES], turned_scaled[COORDINATES], upright[COORDINATES], left[2], motion[PARTS] = {0};
+    double *heading = b[2].buf, *smooth = b[5].buf;
+    if (level != NULL) {
+        turned(level, joints, turned_metric);
+        turned(level, scaled, turned_scaled);
+        metric = turned_metric;
+        scaled = turned_scaled;
+    }
+    horizontal_left(metric, b[3].buf, shortest_m, left);
+    advance_heading(heading, left, elapsed_s, b[4].buf);
+    for (int i = 0; i < COORDINATES; i++)
+        upright[i] = scaled[i] - scaled[3 * torso + i % 3];
+    const double axes[9] = {heading[LEFT_X], 0, heading[LEFT_Z], 0, -1, 0, heading[LEFT_Z], 0, -heading[LEFT_X]};
+    memcpy(turned_scaled, upright, sizeof upright);
+    turned(axes, turned_scaled, upright);
+    if (gain > 0)
+        advance_motion(smooth, joints, torso, gain, b[6].buf, motion);
+    else
+        for (int i = 0; i < COORDINATES; i++)
+            smooth[i] = joints[i] - joints[3 * torso + i % 3];
+    PyObject *lists[5] = {listed_joints(frame + 16), listed_joints(frame + 16 + COORDINATES), listed_joints(upright),
+                          listed(frame, 16), listed(motion, PARTS)};
+    for (int n = 0; n < 7; n++)
         PyBuffer_Release(&b[n]);
-    if (!known)
-        Py_RETURN_NONE;
-    return Py_BuildValue("dd", sum[0] / 2, sum[2] / 2);
+    return Py_BuildValue("NNNNN", lists[0], lists[1], lists[2], lists[3], lists[4]);
 }
 
 PyDoc_STRVAR(spreads_doc,
@@ -684,10 +805,9 @@ static PyMethodDef methods[] = {
     {"decoded", decoded, METH_VARARGS, decoded_doc},
     {"exceeding", exceeding, METH_VARARGS, exceeding_doc},
     {"exponents", exponents, METH_VARARGS, exponents_doc},
-    {"left", left, METH_VARARGS, left_doc},
     {"map_inputs", map_inputs, METH_VARARGS, map_inputs_doc},
-    {"moved", moved, METH_VARARGS, moved_doc},
     {"pooled", pooled, METH_VARARGS, pooled_doc},
+    {"posture", posture, METH_VARARGS, posture_doc},
     {"running_sums", running_sums, METH_VARARGS, running_sums_doc},
     {"smoothed", smoothed, METH_VARARGS, smoothed_doc},
     {"spreads", spreads, METH_VARARGS, spreads_doc},
