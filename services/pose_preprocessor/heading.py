@@ -26,9 +26,7 @@ _LEFT = [INDEX["left_hip"], INDEX["left_shoulder"]]
 _RIGHT = [INDEX["right_hip"], INDEX["right_shoulder"]]
 PAIRS = np.array([_RIGHT, _LEFT], np.int32).tobytes()
 """Right hip and shoulder, then left ones, as the compiled step reads them."""
-TUNED = np.array(
-    [FIRST_S, TIME_CONSTANT_S, _SMALLEST, VARIANCE_INFLATION, FACING_SD_RAD**2, math.tau]
-).tobytes()
+TUNED = np.array([FIRST_S, TIME_CONSTANT_S, _SMALLEST, VARIANCE_INFLATION, FACING_SD_RAD**2, math.tau]).tobytes()
 """The constants of the filter, as the compiled step reads them."""
 
 
@@ -90,11 +88,11 @@ def _yaw_rad(left: tuple[float, float]) -> float:
 
 def _horizontal_left(joints: Array) -> tuple[float, float]:
     """Return the mean (camera x, z) of the unit vectors from right to left hip and shoulder, where both are known."""
-    across = joints[_LEFT] - joints[_RIGHT]
-    lengths = np.sqrt(np.einsum("ij,ij->i", across, across))
-    long_enough = lengths >= SMALLEST_M
-    if long_enough.all():
-        left = (across / lengths[:, None]).sum(axis=0) / 2
-    else:
-        left = (across[long_enough] / lengths[long_enough, None]).sum(axis=0)
-    return float(left[0]), float(left[2])
+    units = []
+    for right, left in zip(joints[_RIGHT].tolist(), joints[_LEFT].tolist(), strict=True):
+        x, y, z = left[0] - right[0], left[1] - right[1], left[2] - right[2]
+        length = math.sqrt(x * x + y * y + z * z)
+        if length >= SMALLEST_M:
+            units.append((x / length, z / length))
+    count = max(len(units), 1)
+    return sum(x for x, _ in units) / count, sum(z for _, z in units) / count
