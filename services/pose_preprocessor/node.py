@@ -207,7 +207,7 @@ class PosePreprocessor:
             self._missing.note(frame.stamp_ns, missing)
         return Posture.of_checked(
             **self._common_fields(frame, agent.agent, missed, present),
-            **lists._asdict(),
+            **dict(zip(_Lists._fields, lists, strict=True)),
             depth_std_m=agent.depth_std_m,
             up_in_camera=frame.up_in_camera,
         )
