@@ -72,7 +72,7 @@ INPUT_SIZES = {name: inputs_of(np.zeros((1, 2 * _SIZE))).shape[1] for name, inpu
 """The dimension of each map, by its name."""
 MIRRORED = _MIRROR.astype(np.int32).tobytes(), _SIGNS.tobytes()
 """For each column of `frame_inputs` the one of which it is the mirror image, and the sign. Of this and all constants
-the compiled steps read the bytes: to take an array's costs more than some steps."""
+the compiled steps read the bytes: to take the buffer of an array costs more."""
 _MAP_INPUTS = (
     np.concatenate([np.arange(2 * _SIZE), _ARM_COLUMNS]).astype(np.int32).tobytes(),
     np.concatenate([np.full(2 * _SIZE, -1), _SHOULDER_COLUMNS]).astype(np.int32).tobytes(),
