@@ -1,5 +1,6 @@
 """A body in its own frame: as it was measured, and with bones of standard length."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -7,12 +8,15 @@ import numpy as np
 from actum import geometry, standard_body
 from actum.arrays import Array
 from actum.core import steps
+from actum.messages import Joint
 from actum.skeletons import INDEX
 
-_PARENTS = np.array([parent for parent, _, _ in standard_body.BONES], np.int32)
-_CHILDREN = np.array([child for _, child, _ in standard_body.BONES], np.int32)
-_LENGTHS_M = np.array([length_m for _, _, length_m in standard_body.BONES])
-_HIPS_TORSO = np.array([INDEX[name] for name in ("right_hip", "left_hip", "torso")], np.int32)
+_PARENTS = np.array([parent for parent, _, _ in standard_body.BONES], np.int32).tobytes()
+_CHILDREN = np.array([child for _, child, _ in standard_body.BONES], np.int32).tobytes()
+_LENGTHS_M = np.array([length_m for _, _, length_m in standard_body.BONES]).tobytes()
+_HIPS_TORSO = np.array([INDEX[name] for name in ("right_hip", "left_hip", "torso")], np.int32).tobytes()
+_NUMBERS = 4 * 3 * len(INDEX) + 16
+"""How many numbers a known body has."""
 
 
 class Body(NamedTuple):
@@ -43,19 +47,16 @@ def body_of(joints: Array) -> Body:
     return Body(metric_and_scaled[1], ego_from_camera[0], metric_ego, scaled_ego)
 
 
-def body_of_known(joints: Array, reach_limit_m: float, bone_limit_m: float) -> Body | None:
-    """Return the body of joints that are all known, by a compiled step; None without one.
+def known_body(joints: Sequence[Joint], reach_limit_m: float, bone_limit_m: float) -> Array | None:
+    """Return a message's joints and the fields of their `Body`, one after the other, by a compiled step; None without.
 
-    None, too, where a joint is beyond the reach, a bone too long, or the frame not defined.
+    None, too, where a joint is unknown or beyond the reach, a bone too long, or the frame not defined. The first 45
+    numbers are the joints.
     """
     if steps is None:
         return None
-    numbers = np.empty(45 + 16 + 45 + 45)
+    numbers = np.empty(_NUMBERS)
     usable = steps.body(
         joints, _PARENTS, _CHILDREN, _LENGTHS_M, _HIPS_TORSO, reach_limit_m, bone_limit_m, geometry.SMALLEST_M, numbers
     )
-    if not usable:
-        return None
-    scaled, ego_from_camera, metric_ego, scaled_ego = numbers[:45], numbers[45:61], numbers[61:106], numbers[106:]
-    of_joints = scaled.reshape(15, 3), metric_ego.reshape(15, 3), scaled_ego.reshape(15, 3)
-    return Body(of_joints[0], ego_from_camera.reshape(4, 4), *of_joints[1:])
+    return numbers if usable else None

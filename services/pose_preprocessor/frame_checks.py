@@ -6,10 +6,9 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.skeletons import JOINTS
-from actum.standard_body import BONES
+from actum.standard_body import BONES, bones_of
 
-_PARENTS = np.array([parent for parent, _, _ in BONES])
-_CHILDREN = np.array([child for _, child, _ in BONES])
+_CHILDREN = [child for _, child, _ in BONES]
 _NEEDED = frozenset({"torso", "neck"})
 """No egocentric frame is defined without them, nor without one of the pairs below."""
 _PAIRS = (frozenset({"left_hip", "right_hip"}), frozenset({"left_shoulder", "right_shoulder"}))
@@ -51,10 +50,9 @@ def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bon
                     "absurd_joint",
                     f"{JOINTS[i]} is further from the camera than the setting reach_limit_m, {reach_limit_m:g} m",
                 )
-    bones = joints[_CHILDREN] - joints[_PARENTS]
-    lengths2 = np.einsum("ij,ij->i", bones, bones)
+    _, lengths2 = bones_of(joints)
     if np.fmax.reduce(lengths2) > bone_limit_m**2:
-        child = JOINTS[int(_CHILDREN[int(np.nanargmax(lengths2))])]
+        child = JOINTS[_CHILDREN[int(np.nanargmax(lengths2))]]
         raise BadFrameError(
             "absurd_bone", f"the bone that ends at {child} is longer than the setting bone_limit_m, {bone_limit_m:g} m"
         )

@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from actum.arrays import Array
-from actum.core import steps
 from actum.geometry import SMALLEST_M
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
@@ -23,8 +22,12 @@ VARIANCE_INFLATION = 2.0
 
 _SMALLEST = 1e-3
 """A mean of unit vectors that is shorter than this has no direction."""
-_LEFT = np.array([INDEX["left_hip"], INDEX["left_shoulder"]], np.int32)
-_RIGHT = np.array([INDEX["right_hip"], INDEX["right_shoulder"]], np.int32)
+_LEFT = [INDEX["left_hip"], INDEX["left_shoulder"]]
+_RIGHT = [INDEX["right_hip"], INDEX["right_shoulder"]]
+PAIRS = np.array([_RIGHT, _LEFT], np.int32).tobytes()
+"""Right hip and shoulder, then left ones, as the compiled step reads them."""
+TUNED = np.array([FIRST_S, TIME_CONSTANT_S, _SMALLEST, VARIANCE_INFLATION, FACING_SD_RAD**2, math.tau]).tobytes()
+"""The constants of the filter, as the compiled step reads them."""
 
 
 class HeadingFilter:
@@ -34,14 +37,19 @@ class HeadingFilter:
 
     The yaw ψ from facing the camera is then shrunk towards 0 by its measured variance v, which is large where the
     hips are tracked poorly: ψ (1 - cos ψ · 2v / (2v + (15°)²)). Beyond a quarter turn it stays as it is.
+
+    Attributes:
+        state: (6,), T (s), the mean (x, z), v (rad²) and the last answer (x, z); the compiled step advances it, too.
     """
 
     def __init__(self) -> None:
         self._stamp_ns: int | None = None
-        self._span_s = 0.0
-        self._mean = (0.0, 0.0)
-        self._variance_rad2 = 0.0
-        self._left = (1.0, 0.0)
+        self.state = np.array([0.0, 0.0, 0.0, 0.0, 1.0, 0.0])
+
+    def elapsed_s(self, stamp_ns: int) -> float:
+        """Return how long after the frame before a frame is (s), 0 for the first and after a gap: stamps rise."""
+        before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
+        return 0.0 if before_ns is None or stamp_ns - before_ns > GAP_NS else (stamp_ns - before_ns) / SECOND_NS
 
     def step(self, stamp_ns: int, joints: Array) -> tuple[float, float]:
         """Return the unit vector (camera x, z) to the actor's left; after a gap the filter restarts.
@@ -53,26 +61,24 @@ class HeadingFilter:
             stamp_ns: rising from call to call.
             joints: (15, 3), frame of a level camera, metres; NaN where unknown.
         """
-        before_ns, self._stamp_ns = self._stamp_ns, stamp_ns
-        left = _horizontal_left(joints)
-        if before_ns is None or stamp_ns - before_ns > GAP_NS:
-            self._span_s, self._mean, self._variance_rad2 = FIRST_S, left, 0.0
+        elapsed_s, left = self.elapsed_s(stamp_ns), _horizontal_left(joints)
+        span_s, x, z, variance_rad2, left_x, left_z = self.state.tolist()
+        if elapsed_s == 0.0:
+            span_s, (x, z), variance_rad2 = FIRST_S, left, 0.0
         else:
-            elapsed_s = (stamp_ns - before_ns) / SECOND_NS
-            self._span_s += elapsed_s
+            span_s += elapsed_s
             smoothing_gain = 1.0 - math.exp(-elapsed_s / TIME_CONSTANT_S)
-            weight = max(smoothing_gain, elapsed_s / self._span_s)
-            (x, z), (left_x, left_z) = self._mean, left
-            self._mean = (x + weight * (left_x - x), z + weight * (left_z - z))
+            weight = max(smoothing_gain, elapsed_s / span_s)
+            x, z = x + weight * (left[0] - x), z + weight * (left[1] - z)
             if math.hypot(*left) >= _SMALLEST:
-                error_rad = math.remainder(_yaw_rad(left) - _yaw_rad(self._mean), math.tau)
-                self._variance_rad2 += smoothing_gain * (error_rad * error_rad - self._variance_rad2)
-        if math.hypot(*self._mean) >= _SMALLEST:
-            seen_rad = _yaw_rad(self._mean)
-            variance = VARIANCE_INFLATION * self._variance_rad2
+                error_rad = math.remainder(_yaw_rad(left) - _yaw_rad((x, z)), math.tau)
+                variance_rad2 += smoothing_gain * (error_rad * error_rad - variance_rad2)
+        if math.hypot(x, z) >= _SMALLEST:
+            seen_rad, variance = _yaw_rad((x, z)), VARIANCE_INFLATION * variance_rad2
             yaw_rad = seen_rad * (1.0 - max(math.cos(seen_rad), 0.0) * variance / (variance + FACING_SD_RAD**2))
-            self._left = (math.cos(yaw_rad), math.sin(yaw_rad))
-        return self._left
+            left_x, left_z = math.cos(yaw_rad), math.sin(yaw_rad)
+        self.state[:] = span_s, x, z, variance_rad2, left_x, left_z
+        return left_x, left_z
 
 
 def _yaw_rad(left: tuple[float, float]) -> float:
@@ -82,15 +88,11 @@ def _yaw_rad(left: tuple[float, float]) -> float:
 
 def _horizontal_left(joints: Array) -> tuple[float, float]:
     """Return the mean (camera x, z) of the unit vectors from right to left hip and shoulder, where both are known."""
-    if steps is not None:
-        known: tuple[float, float] | None = steps.left(np.ascontiguousarray(joints), _RIGHT, _LEFT, SMALLEST_M)
-        if known is not None:
-            return known
-    across = joints[_LEFT] - joints[_RIGHT]
-    lengths = np.sqrt(np.einsum("ij,ij->i", across, across))
-    long_enough = lengths >= SMALLEST_M
-    if long_enough.all():
-        left = (across / lengths[:, None]).sum(axis=0) / 2
-    else:
-        left = (across[long_enough] / lengths[long_enough, None]).sum(axis=0)
-    return float(left[0]), float(left[2])
+    units = []
+    for right, left in zip(joints[_RIGHT].tolist(), joints[_LEFT].tolist(), strict=True):
+        x, y, z = left[0] - right[0], left[1] - right[1], left[2] - right[2]
+        length = math.sqrt(x * x + y * y + z * z)
+        if length >= SMALLEST_M:
+            units.append((x / length, z / length))
+    count = max(len(units), 1)
+    return sum(x for x, _ in units) / count, sum(z for _, z in units) / count

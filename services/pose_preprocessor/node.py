@@ -1,34 +1,48 @@
 """The preprocessor's pure step: each agent of a skeleton frame becomes one posture."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from actum import geometry, keys
 from actum.arrays import Array, joints_to_array, joints_to_list
 from actum.commands import Command
+from actum.core import steps
 from actum.limits import MOST_STREAMS
 from actum.messages import Agent, Joint, Message, Posture, Skeleton
 from actum.node import Counters, Tick
 from actum.parameters import LiveParameters
 from actum.skeletons import INDEX, JOINTS
 from actum.stamps import LostFrames, Order, StampGuard
-from pose_preprocessor.body import Body, body_of, body_of_known
+from pose_preprocessor.body import body_of, known_body
 from pose_preprocessor.bridging import Bridge
 from pose_preprocessor.frame_checks import BadFrameError, check_frame
-from pose_preprocessor.heading import HeadingFilter
+from pose_preprocessor.heading import PAIRS, TUNED, HeadingFilter
 from pose_preprocessor.missing_joints import RecentlyMissing
-from pose_preprocessor.part_motion import PartMotionFilter
+from pose_preprocessor.part_motion import PART_OF, PartMotionFilter
 from pose_preprocessor.settings import Settings
 
 _TORSO = INDEX["torso"]
 ALWAYS = (_TORSO, INDEX["neck"])
 """The joints that every valid posture has, measured or bridged."""
 
+SEVERAL_CAMERAS = 16
+"""Entries in the cache of rotations to a level camera: a camera that stands has one."""
 LIVE = ("reach_limit_m", "bone_limit_m")
 """The settings that may be changed while it runs."""
+
+
+class _Lists(NamedTuple):
+    """What a valid posture says of the body, as its fields of these names."""
+
+    joints_m: list[Joint]
+    joints: list[Joint]
+    upright: list[Joint]
+    ego_from_camera: list[float]
+    motion: list[float]
 
 
 @dataclass
@@ -40,7 +54,60 @@ class _Person:
     motion: PartMotionFilter = field(default_factory=PartMotionFilter)
     heading: HeadingFilter = field(default_factory=HeadingFilter)
 
-    def upright(self, stamp_ns: int, metric: Array, scaled: Array, up_in_camera: list[float] | None) -> Array:
+    def lists(self, frame: Skeleton, joints: list[Joint], limits_m: tuple[float, float]) -> _Lists:
+        """Advance the filters by the joints of a frame, and return what its posture says of the body.
+
+        Raises:
+            BadFrameError: the joints cannot be used, or are those of the frame before.
+            DegenerateError: the egocentric frame is not defined.
+        """
+        body = known_body(joints, *limits_m)
+        if body is None or steps is None:
+            return self._lists(frame, joints, limits_m)
+        self._keep(frame.stamp_ns, joints, body[: 3 * len(JOINTS)].reshape(-1, 3), ())
+        level = None if frame.up_in_camera is None else _level_from_camera(tuple(frame.up_in_camera))
+        elapsed_s, gain = self.heading.elapsed_s(frame.stamp_ns), self.motion.gain(frame.stamp_ns)
+        return _Lists._make(
+            steps.posture(
+                body, level, self.heading.state, elapsed_s, PAIRS, TUNED, geometry.SMALLEST_M, self.motion.smooth, gain,
+                _TORSO, PART_OF,
+            )
+        )  # fmt: skip
+
+    def _lists(self, frame: Skeleton, joints: list[Joint], limits_m: tuple[float, float]) -> _Lists:
+        """Return the same as `lists`, in NumPy: of joints some of which are not known or not usable."""
+        missing = [index for index, joint in enumerate(joints) if joint is None]
+        measured = joints_to_array(joints)
+        bridged = self.bridge.filled(frame.stamp_ns, measured, missing) if missing else measured
+        check_frame(bridged, [index for index in missing if np.isnan(bridged[index, 0])], *limits_m)
+        body = body_of(bridged)
+        self._keep(frame.stamp_ns, joints, bridged, missing)
+        if missing:
+            body.metric_ego[[index for index in missing if index not in ALWAYS]] = np.nan
+            measured[_TORSO] = bridged[_TORSO]
+        return _Lists(
+            joints_to_list(body.metric_ego),
+            joints_to_list(body.scaled_ego),
+            joints_to_list(self._upright(frame.stamp_ns, bridged, body.scaled, frame.up_in_camera)),
+            geometry.flat(body.ego_from_camera),
+            self.motion.step(frame.stamp_ns, measured),
+        )
+
+    def _keep(self, stamp_ns: int, joints: list[Joint], bridged: Array, missing: Sequence[int]) -> None:
+        """Remember usable joints, as they were received and with missing ones bridged.
+
+        Raises:
+            BadFrameError: they are those of the frame before.
+        """
+        if joints == self.joints:
+            raise BadFrameError(
+                "repeated_joints",
+                "all joints equal those of the previous frame, so the sensor lost the person or is frozen",
+            )
+        self.joints = joints
+        self.bridge.keep(stamp_ns, bridged, missing)
+
+    def _upright(self, stamp_ns: int, metric: Array, scaled: Array, up_in_camera: list[float] | None) -> Array:
         """Advance the heading by the metric joints, and return the scaled ones in the upright frame, (15, 3).
 
         Args:
@@ -50,9 +117,14 @@ class _Person:
             up_in_camera: the direction against gravity, camera frame; None where the camera is level.
         """
         if up_in_camera is not None:
-            level_from_camera = geometry.untilted_from_camera(up_in_camera)
+            level_from_camera = _level_from_camera(tuple(up_in_camera))
             metric, scaled = metric @ level_from_camera.T, scaled @ level_from_camera.T
         return geometry.upright(scaled, *self.heading.step(stamp_ns, metric))
+
+
+@lru_cache(SEVERAL_CAMERAS)
+def _level_from_camera(up_in_camera: tuple[float, ...]) -> Array:
+    return geometry.untilted_from_camera(up_in_camera)
 
 
 class PosePreprocessor:
@@ -125,46 +197,20 @@ class PosePreprocessor:
             return self._invalid(frame, agent.agent, f"{kind}: {error}", missed, present)
 
     def _valid(self, frame: Skeleton, agent: Agent, missed: int, present: list[int]) -> Posture:
-        missing = [index for index, joint in enumerate(agent.joints) if joint is None]
-        person = self._persons.setdefault(agent.agent, _Person())
-        measured = joints_to_array(agent.joints)
-        bridged = person.bridge.filled(frame.stamp_ns, measured, missing) if missing else measured
-        body = self._body(bridged, missing)
-        if agent.joints == person.joints:
-            raise BadFrameError(
-                "repeated_joints",
-                "all joints equal those of the previous frame, so the sensor lost the person or is frozen",
-            )
-        person.joints = agent.joints
-        person.bridge.keep(frame.stamp_ns, bridged, missing)
-        self._missing.note(frame.stamp_ns, [JOINTS[index] for index in missing])
-        if missing:
-            body.metric_ego[[index for index in missing if index not in ALWAYS]] = np.nan
-            measured[_TORSO] = bridged[_TORSO]
-        return Posture(
+        person = self._persons.get(agent.agent)
+        if person is None:
+            person = self._persons[agent.agent] = _Person()
+        limits_m = self._settings.reach_limit_m, self._settings.bone_limit_m
+        lists = person.lists(frame, agent.joints, limits_m)
+        if None in agent.joints:
+            missing = [name for name, joint in zip(JOINTS, agent.joints, strict=True) if joint is None]
+            self._missing.note(frame.stamp_ns, missing)
+        return Posture.of_checked(
             **self._common_fields(frame, agent.agent, missed, present),
-            joints_m=joints_to_list(body.metric_ego),
-            joints=joints_to_list(body.scaled_ego),
-            upright=joints_to_list(person.upright(frame.stamp_ns, bridged, body.scaled, frame.up_in_camera)),
-            ego_from_camera=geometry.flat(body.ego_from_camera),
-            motion=person.motion.step(frame.stamp_ns, measured),
+            **dict(zip(_Lists._fields, lists, strict=True)),
             depth_std_m=agent.depth_std_m,
             up_in_camera=frame.up_in_camera,
         )
-
-    def _body(self, joints: Array, missing: list[int]) -> Body:
-        """Return the body of joints (15, 3), of which missing ones are bridged where that is possible.
-
-        Raises:
-            BadFrameError: they cannot be used.
-            DegenerateError: the egocentric frame is not defined.
-        """
-        limits_m = self._settings.reach_limit_m, self._settings.bone_limit_m
-        body = None if missing else body_of_known(joints, *limits_m)
-        if body is None:
-            check_frame(joints, [index for index in missing if np.isnan(joints[index, 0])], *limits_m)
-            body = body_of(joints)
-        return body
 
     def _invalid(self, frame: Skeleton, agent: int, reason: str, missed: int, present: list[int]) -> Posture:
         return Posture(

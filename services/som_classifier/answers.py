@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.messages import AUTO, Action, HeldBack, Posture, Segment, Tensor, WhyHeldBack
-from actum.skeletons import JOINTS
-from som_classifier.frames import Frame
+from som_classifier.frames import Stretch, missing_joints
 from som_classifier.model import Recognition
 from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.spotting.spotted import Ongoing
@@ -23,10 +22,10 @@ WHY_HELD_BACK: Mapping[WhyHeldBack, str] = {
 """The reasons in words; `{}` stands for the action."""
 
 
-def partial_action(segment: OpenSegment, recognition: Recognition, frames: list[Frame], posture: Posture) -> Action:
+def partial_action(segment: OpenSegment, recognition: Recognition, seen: Stretch, posture: Posture) -> Action:
     """Say what an open segment shows so far, at a posture's instant."""
     assert segment.start_ns is not None
-    return Action(
+    return Action.of_checked(
         stamp_ns=posture.stamp_ns,
         sensor=posture.sensor,
         agent=posture.agent,
@@ -35,17 +34,17 @@ def partial_action(segment: OpenSegment, recognition: Recognition, frames: list[
         end_ns=None,
         final=False,
         **_recognised_fields(recognition),
-        frames=sum(frame.valid for frame in frames),
-        missed=sum(frame.missed for frame in frames),
+        frames=len(seen.usable),
+        missed=seen.missed,
         hand=segment.hand,
-        missing_joints=_missing(frames),
+        missing_joints=seen.missing_joints,
         session_id=posture.session_id,
     )
 
 
-def ongoing_action(segment_id: str, ongoing: Ongoing, frames: list[Frame], posture: Posture) -> Action:
+def ongoing_action(segment_id: str, ongoing: Ongoing, seen: Stretch, posture: Posture) -> Action:
     """Say what seems to be going on though nobody marked it, at a posture's instant."""
-    return Action(
+    return Action.of_checked(
         stamp_ns=posture.stamp_ns,
         sensor=posture.sensor,
         agent=posture.agent,
@@ -57,9 +56,9 @@ def ongoing_action(segment_id: str, ongoing: Ongoing, frames: list[Frame], postu
         confidence=ongoing.confidence,
         activations={},
         part=None,
-        frames=sum(frame.valid for frame in frames),
-        missed=sum(frame.missed for frame in frames),
-        missing_joints=_missing(frames),
+        frames=len(seen.usable),
+        missed=seen.missed,
+        missing_joints=seen.missing_joints,
         completeness=ongoing.completeness,
         session_id=posture.session_id,
     )
@@ -88,12 +87,12 @@ def final_action(
         end_ns=closed.end_ns,
         final=True,
         **_recognised_fields(recognition),
-        frames=sum(frame.valid for frame in closed.frames),
+        frames=len(closed.usable),
         missed=closed.missed,
         hand=closed.hand,
         unknown=recognition.unknown if recognition else False,
         familiarity=recognition.familiarity if recognition else None,
-        missing_joints=_missing(closed.frames),
+        missing_joints=missing_joints(closed.frames),
         **more,
     )
 
@@ -142,8 +141,3 @@ def _recognised_fields(recognition: Recognition | None) -> dict[str, Any]:
         "activations": recognition.activations,
         "part": recognition.part,
     }
-
-
-def _missing(frames: list[Frame]) -> list[str]:
-    """Name the joints that some frame lacked, in the order of `JOINTS`."""
-    return [JOINTS[joint] for joint in sorted({joint for frame in frames for joint in frame.missing})]

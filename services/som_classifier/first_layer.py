@@ -20,6 +20,8 @@ VELOCITY_WEIGHT = 3.0
 SMALLEST_ERROR2 = 6e-5
 """Smaller squared quantization errors (m²) count as this, 2 mm a joint on average: the logarithm of 0 is infinite."""
 
+BLOCK = 32
+"""Units whose weights lie together for the compiled step: as many sums as fit into a processor's registers."""
 _SIZE = 3 * len(JOINTS)
 _ARM = np.arange(3 * INDEX["right_elbow"], 3 * INDEX["right_hand"] + 3)
 _SHOULDER = np.tile(np.arange(3), 2) + 3 * INDEX["right_shoulder"]
@@ -68,20 +70,20 @@ MAP_INPUTS: Mapping[str, Callable[[Floats], Floats]] = {
 """The maps by name, in the order in which they are trained: what each is shown (n, dim) of `frame_inputs` (n, 90)."""
 INPUT_SIZES = {name: inputs_of(np.zeros((1, 2 * _SIZE))).shape[1] for name, inputs_of in MAP_INPUTS.items()}
 """The dimension of each map, by its name."""
-_MINUEND = np.concatenate([np.arange(2 * _SIZE), _ARM_COLUMNS]).astype(np.int32)
-_SUBTRAHEND = np.concatenate([np.full(2 * _SIZE, -1), _SHOULDER_COLUMNS]).astype(np.int32)
-_FACTORS = np.concatenate([np.ones(2 * _SIZE), _WEIGHTS])
-"""The inputs of all maps, as the compiled steps read them: a column of `frame_inputs`, less another one where there is
-one (-1 else), times a factor."""
-MIRRORED_FRAME = _MIRROR.astype(np.int32), _SIGNS
-"""For each column of `frame_inputs` the one of which it is the mirror image, and the sign."""
-MIRRORED_POSTURE = MIRRORED_FRAME[0][:_SIZE], _SIGNS[:_SIZE]
-"""The same for a posture alone."""
+MIRRORED = _MIRROR.astype(np.int32).tobytes(), _SIGNS.tobytes()
+"""For each column of `frame_inputs` the one of which it is the mirror image, and the sign. Of this and all constants
+the compiled steps read the bytes: to take the buffer of an array costs more."""
+_MAP_INPUTS = (
+    np.concatenate([np.arange(2 * _SIZE), _ARM_COLUMNS]).astype(np.int32).tobytes(),
+    np.concatenate([np.full(2 * _SIZE, -1), _SHOULDER_COLUMNS]).astype(np.int32).tobytes(),
+    np.concatenate([np.ones(2 * _SIZE), _WEIGHTS]).tobytes(),
+)
+"""The inputs of all maps: a column of `frame_inputs`, less another one where there is one (-1 else), times a factor."""
 ACTING_ARM, OTHER_ARM = Channel("arms"), Channel("arms", mirrored=True)
 CHANNELS = (Channel("postures"), Channel("velocities"), ACTING_ARM, OTHER_ARM)
 """The blocks of a frame's activity, in this order; the arm map answers for both arms."""
 _CHANNEL_MAPS = tuple(
-    np.array(each, np.int32)
+    np.array(each, np.int32).tobytes()
     for each in zip(*[(list(MAP_INPUTS).index(name), mirrored) for name, mirrored in CHANNELS], strict=True)
 )
 """The number of each channel's map, and whether it is shown the mirror image."""
@@ -107,7 +109,7 @@ class FirstMaps:
         """The map of postures."""
         return self.maps["postures"]
 
-    @property
+    @cached_property
     def units(self) -> int:
         """The length of a frame's activity vector: as many units as a map has, for each channel."""
         return len(CHANNELS) * len(self.postures.weights)
@@ -141,8 +143,10 @@ class FirstMaps:
             winners: (n,), the posture map's winner for each.
         """
         error = postures.reshape(-1, _SIZE) - self.postures.weights[winners]
-        known = ~np.isnan(error)
-        mean2 = np.square(np.where(known, error, 0.0)).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
+        mean2 = np.square(error).sum(axis=1) / _SIZE
+        if np.isnan(mean2).any():
+            known = ~np.isnan(error)
+            mean2 = np.square(np.where(known, error, 0.0)).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
         errors: Floats = np.log(np.maximum(mean2 * _SIZE, SMALLEST_ERROR2))
         return errors
 
@@ -173,10 +177,8 @@ class FirstMaps:
             posture: (15, 3), contiguous, no joint missing.
             velocity: (15, 3), contiguous.
         """
-        together, centred = self._together, np.empty((2, len(_MINUEND)), np.float32)
-        steps.map_inputs(posture, velocity, *MIRRORED_FRAME, _MINUEND, _SUBTRAHEND, _FACTORS, together.centre, centred)
         activities = np.empty((2, self.units), np.float32)
-        steps.exponents(together.products(centred), together.half_norms2, *_CHANNEL_MAPS, self._slopes, activities)
+        steps.exponents(posture, velocity, *MIRRORED, *_MAP_INPUTS, *self._compiled, activities)
         return np.exp(activities, out=activities)
 
     def _partly_known(self, rows: Floats) -> Floats:
@@ -201,15 +203,36 @@ class FirstMaps:
         return (-1 / np.array([self.contrasts[name] for name, _ in CHANNELS]))[:, None].astype(np.float32)
 
     @cached_property
-    def posture_weights(self) -> NDArray[np.float32]:
-        """The weights of the map of postures, (units, 45), one after the other in memory."""
-        return np.ascontiguousarray(self.postures.weights, np.float32)
+    def _compiled(self) -> tuple[bytes, ...]:
+        """What the compiled step reads of the maps.
+
+        Of each map the dimension, the centre, the slopes in blocks of units, and the terms that are added to products;
+        of each channel its map, its side and the slope of its activity.
+        """
+        lookups = [self.maps[name].lookup for name in MAP_INPUTS]
+        dims = np.array([lookup.dim for lookup in lookups], np.int32).tobytes()
+        centres, half_norms2 = (
+            b"".join(getattr(lookup, name).tobytes() for lookup in lookups) for name in ("centre", "half_norms2")
+        )
+        slopes = b"".join(_in_blocks(lookup.slopes).tobytes() for lookup in lookups)
+        return dims, centres, slopes, half_norms2, *_CHANNEL_MAPS, self._slopes.tobytes()
+
+    @cached_property
+    def posture_weights(self) -> bytes:
+        """The weights of the map of postures, (units, 45) single-precision numbers, one after the other."""
+        return self.postures.weights.astype(np.float32).tobytes()
 
     @cached_property
     def shares(self) -> NDArray[np.float32]:
         """The sum of each channel's activity, (channels, 1)."""
         shares = dict(zip((ACTING_ARM, OTHER_ARM), self.arm_shares, strict=True))
         return np.array([shares.get(channel, 1.0) for channel in CHANNELS], np.float32)[:, None]
+
+
+def _in_blocks(slopes: Floats) -> Floats:
+    """Return (dim, units) in blocks of `BLOCK` units, (blocks, dim, BLOCK), with zeros for units beyond the last."""
+    padded = np.pad(slopes, ((0, 0), (0, -slopes.shape[1] % BLOCK)))
+    return np.ascontiguousarray(padded.reshape(len(slopes), -1, BLOCK).swapaxes(0, 1))
 
 
 def _excess2(som: Som, x: Floats) -> Floats:

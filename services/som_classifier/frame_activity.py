@@ -4,8 +4,8 @@ A sum over a segment is the difference of two prefix sums, so that its cost does
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,11 @@ from actum.arrays import Array
 from actum.core import steps
 from actum.skeletons import JOINTS
 from som_classifier.attention import PART_NAMES
-from som_classifier.first_layer import MIRRORED_POSTURE, SMALLEST_ERROR2, FirstMaps
+from som_classifier.first_layer import MIRRORED, SMALLEST_ERROR2, FirstMaps
 from som_classifier.frames import Frame
-from som_classifier.handedness import COMPONENTS, LIMBS, MOMENTS, LimbSpreads, limb_moments, mirrored
+from som_classifier.handedness import COMPONENTS, LIMBS, MOMENTS, left_arm_acts, limb_moments, mirrored
 from som_classifier.kinematics import Kinematics
-from som_classifier.pyramid import SCALE, Prefix, PrefixSums, Sums, quantised
+from som_classifier.pyramid import MOST_FRAMES, SCALE, Prefix, PrefixSums, Pyramid, Sums, quantised
 
 Totals = NDArray[np.int64]
 """Prefix sums of whole numbers: the displacement of each part (5; µm), the moments of the limbs (4 * 8), the number of
@@ -28,15 +28,14 @@ _PARTS = slice(0, len(PART_NAMES))
 _LIMBS = slice(_PARTS.stop, _PARTS.stop + LIMBS * MOMENTS)
 _MISSING = _LIMBS.stop
 _LOG_ERRORS = slice(_MISSING + 1, _MISSING + 3)
-_LIMB_COMPONENTS = COMPONENTS.astype(np.int32)
+_LIMB_COMPONENTS = COMPONENTS.astype(np.int32).tobytes()
 UM_PER_M = 1e6
 """Micrometres in a metre: displacements are added up in whole ones."""
 _MILLIONTHS = 1e6
 """Steps per unit in which logarithms are added up."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FrameActivity:
+class FrameActivity(NamedTuple):
     """The prefix sums before and after a frame, and its winners on the posture map.
 
     Attributes:
@@ -68,40 +67,38 @@ class FrameEncoder:
         assert frame.kinematics is not None and frame.motion is not None
         before, totals_before = self._prefix, self._totals
         if steps is None or frame.missing or self._first.postures.dtype != np.float32:
-            winners = self._add(frame, frame.kinematics, frame.motion)
+            *winners, moved_um = self._add(frame, frame.kinematics, frame.motion)
         else:
-            winners = self._add_compiled(steps, frame.kinematics, frame.motion)
-        moved_um = (self._totals[_PARTS] - totals_before[_PARTS]).tolist()
-        self._prefix = Prefix(tuple(self._sums), before.travelled_um + sum(moved_um))
+            *winners, moved_um = self._add_compiled(steps, frame.kinematics, frame.motion)
+        self._prefix = Prefix((self._sums[0], self._sums[1]), before.travelled_um + moved_um)
         return FrameActivity(before, self._prefix, totals_before, self._totals, (winners[0], winners[1]))
 
-    def _add(self, frame: Frame, kinematics: Kinematics, motion: Array) -> list[int]:
-        """Add a frame to the sums and return its winners on the posture map, as seen and mirrored."""
+    def _add(self, frame: Frame, kinematics: Kinematics, motion: Array) -> tuple[int, int, int]:
+        """Add a frame to the sums; return its winners on the posture map, as seen and mirrored, and how far it moved.
+
+        That is the sum of the displacements of all parts, in micrometres.
+        """
         posture = kinematics.posture
         activities = self._first.frame_activities(posture, kinematics.velocity)
         winners: list[int] = activities[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
         log_errors = self._first.log_errors(np.stack([posture, mirrored(posture)]), winners)
         self._sums = self._sums + quantised(activities)
-        self._totals = self._totals.copy()
-        self._totals[_PARTS] += np.rint(motion * UM_PER_M).astype(np.int64)
-        self._totals[_LIMBS] += limb_moments(posture).ravel()
-        self._totals[_MISSING] += len(frame.missing)
-        self._totals[_LOG_ERRORS] += np.rint(log_errors * _MILLIONTHS).astype(np.int64)
-        return winners
+        moved_um = np.rint(motion * UM_PER_M)
+        added = moved_um, limb_moments(posture).ravel(), [len(frame.missing)], np.rint(log_errors * _MILLIONTHS)
+        self._totals = self._totals + np.concatenate(added).astype(np.int64)
+        return winners[0], winners[1], int(moved_um.sum())
 
-    def _add_compiled(self, steps: ModuleType, kinematics: Kinematics, motion: Array) -> list[int]:
-        """Add a frame whose joints are all known, by compiled steps; return its winners as `_add` does."""
+    def _add_compiled(self, steps: ModuleType, kinematics: Kinematics, motion: Array) -> tuple[int, int, int]:
+        """Add a frame whose joints are all known, by compiled steps; return the same as `_add`."""
         posture, velocity = np.ascontiguousarray(kinematics.posture), np.ascontiguousarray(kinematics.velocity)
-        before, totals_before, winners = self._sums, self._totals, np.empty(2, np.int64)
+        before, totals_before = self._sums, self._totals
         activities = self._first.unnormalised_activities(steps, posture, velocity)
         self._sums, self._totals = np.empty_like(before), np.empty_like(totals_before)
-        steps.accumulated(activities, self._first.shares, SCALE, before, self._sums, winners)
-        steps.totals(
-            totals_before, np.ascontiguousarray(motion), posture, *MIRRORED_POSTURE, self._first.posture_weights,
-            winners, _LIMB_COMPONENTS, SMALLEST_ERROR2, self._totals,
+        added: tuple[int, int, int] = steps.added(
+            activities, self._first.shares, SCALE, before, self._sums, np.ascontiguousarray(motion), posture, *MIRRORED,
+            self._first.posture_weights, _LIMB_COMPONENTS, SMALLEST_ERROR2, totals_before, self._totals,
         )  # fmt: skip
-        chosen: list[int] = winners.tolist()
-        return chosen
+        return added
 
 
 def segment_sums(frames: Sequence[FrameActivity], in_mirror: bool) -> PrefixSums:
@@ -110,12 +107,29 @@ def segment_sums(frames: Sequence[FrameActivity], in_mirror: bool) -> PrefixSums
     return PrefixSums([at.sums[side] for at in prefixes], np.array([at.travelled_um for at in prefixes]))
 
 
+def pooled_windows(
+    pyramid: Pyramid, frames: list[FrameActivity], firsts: Sequence[int], in_mirror: Sequence[bool]
+) -> list[NDArray[np.float32]]:
+    """Return the pyramid vectors (inputs,) of windows that end with the last frame.
+
+    Args:
+        pyramid: by which they are pooled.
+        frames: of the longest window.
+        firsts: the index of each window's first frame.
+        in_mirror: whether each window is read as its mirror image.
+    """
+    if steps is None or len(frames) > MOST_FRAMES:
+        sums = {side: segment_sums(frames, side) for side in set(in_mirror)}
+        windows = [sums[side].between(first, len(frames)) for side, first in zip(in_mirror, firsts, strict=True)]
+        return list(map(pyramid.vector, windows))
+    vectors = np.empty((len(firsts), pyramid.cells * len(frames[0].before.sums[0])), np.float32)
+    steps.pooled_windows(frames, list(firsts), list(in_mirror), *pyramid.compiled, SCALE, vectors)
+    return list(vectors)
+
+
 def left_handed(frames: Sequence[FrameActivity]) -> bool:
     """Tell whether the left arm acts over a segment, of which only the first and the last frame matter."""
-    before, after = (
-        totals[_LIMBS].reshape(LIMBS, MOMENTS) for totals in (frames[0].totals_before, frames[-1].totals_after)
-    )
-    return LimbSpreads.between(before, after).left_handed
+    return left_arm_acts(frames[0].totals_before, frames[-1].totals_after, _LIMBS.start)
 
 
 def most_moved_part(frames: Sequence[FrameActivity]) -> str:

@@ -3,17 +3,19 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from actum.arrays import Array, joints_to_array
+from actum.core import steps
 from actum.limits import MAX_COORDINATE_M
 from actum.messages import Joint, Posture
-from actum.skeletons import INDEX
+from actum.skeletons import INDEX, JOINTS, PARTS
 from som_classifier.kinematics import Kinematics, KinematicsFilter
 
 _TORSO = INDEX["torso"]
+_SIZE = 3 * len(INDEX)
 
 
 @dataclass
@@ -54,6 +56,31 @@ class Frame:
         return self.joints is not None
 
 
+class Stretch(NamedTuple):
+    """The frames of a part of a stream.
+
+    Attributes:
+        usable: the valid ones.
+        missed: how many were lost on the way.
+        missing_joints: the names of the joints that some frame lacks, in the order of `JOINTS`.
+    """
+
+    usable: list[Frame]
+    missed: int
+    missing_joints: list[str]
+
+    @classmethod
+    def of(cls, frames: list[Frame]) -> "Stretch":
+        """Sum up frames."""
+        usable = [frame for frame in frames if frame.valid]
+        return cls(usable, sum(frame.missed for frame in frames), missing_joints(frames))
+
+
+def missing_joints(frames: Sequence[Frame]) -> list[str]:
+    """Name the joints that some frame lacked, in the order of `JOINTS`."""
+    return [JOINTS[joint] for joint in sorted({joint for frame in frames for joint in frame.missing})]
+
+
 def frame_of(posture: Posture, lost: int, smoothing: KinematicsFilter) -> Frame:
     """Read a message and advance its agent's filter.
 
@@ -62,36 +89,55 @@ def frame_of(posture: Posture, lost: int, smoothing: KinematicsFilter) -> Frame:
         lost: how many messages of the same key are missing right before it.
         smoothing: the filter of the posture's agent.
     """
-    frame = Frame(
+    origin_m = math.inf if posture.ego_from_camera is None else math.hypot(*posture.ego_from_camera[3:12:4])
+    agents, missed = tuple(posture.agents), posture.missed + lost
+    read = _usable_arrays(posture)
+    if read is None:
+        return Frame(posture.stamp_ns, posture.previous_ns, agents, missed, origin_m, None, None, reason=posture.reason)
+    joints, motion, upright, missing = read
+    return Frame(
         posture.stamp_ns,
         posture.previous_ns,
-        tuple(posture.agents),
-        posture.missed + lost,
-        math.inf if posture.ego_from_camera is None else math.hypot(*posture.ego_from_camera[3:12:4]),
-        None,
-        None,
+        agents,
+        missed,
+        origin_m,
+        joints,
+        motion,
+        smoothing.step(posture.stamp_ns, upright),
+        missing,
+        posture.depth_std_m is not None,
         reason=posture.reason,
     )
-    arrays = _usable_arrays(posture)
-    if arrays is not None:
-        frame.joints, frame.motion, upright = arrays
-        frame.kinematics = smoothing.step(posture.stamp_ns, upright)
-        frame.depth_inferred = posture.depth_std_m is not None
-        frame.missing = tuple(np.flatnonzero(np.isnan(upright[:, 0])).tolist())
-    return frame
 
 
-def _usable_arrays(posture: Posture) -> tuple[Array, Array, Array] | None:
-    """Return joints (15, 3), motion (5,) and upright joints (15, 3).
+def _usable_arrays(posture: Posture) -> tuple[Array, Array, Array, tuple[int, ...]] | None:
+    """Return joints (15, 3), motion (5,), upright joints (15, 3), and which of these are missing.
 
     Return None where a value is not finite or absurd, or all joints are missing.
     """
     if not posture.valid or posture.joints is None or posture.motion is None:
         return None
-    joints, motion = joints_to_array(posture.joints), np.array(posture.motion, dtype=np.float64)
-    upright = joints - joints[_TORSO] if posture.upright is None else joints_to_array(posture.upright)
-    usable = _is_usable(posture.joints, joints) and _is_usable(posture.upright or posture.joints, upright)
-    return (joints, motion, upright) if usable and (np.abs(motion) < MAX_COORDINATE_M).all() else None
+    if steps is None:
+        return _read(posture.joints, posture.upright, posture.motion)
+    numbers = np.empty(2 * _SIZE + len(PARTS))
+    missing = steps.usable(posture.joints, posture.upright, posture.motion, _TORSO, MAX_COORDINATE_M, numbers)
+    if missing is None:
+        return None
+    joints, upright = numbers[: 2 * _SIZE].reshape(2, -1, 3)
+    return joints, numbers[2 * _SIZE :], upright, missing
+
+
+def _read(
+    listed: list[Joint], listed_upright: list[Joint] | None, listed_motion: list[float]
+) -> tuple[Array, Array, Array, tuple[int, ...]] | None:
+    """Return the same as `_usable_arrays`, in NumPy."""
+    joints, motion = joints_to_array(listed), np.array(listed_motion, dtype=np.float64)
+    upright = joints - joints[_TORSO] if listed_upright is None else joints_to_array(listed_upright)
+    usable = _is_usable(listed, joints) and _is_usable(listed_upright or listed, upright)
+    if not (usable and (np.abs(motion) < MAX_COORDINATE_M).all()):
+        return None
+    missing = tuple(np.flatnonzero(np.isnan(upright[:, 0])).tolist()) if None in (listed_upright or listed) else ()
+    return joints, motion, upright, missing
 
 
 def _is_usable(joints: Sequence[Joint], array: Array) -> bool:

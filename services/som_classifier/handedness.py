@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,8 +72,7 @@ def limb_moments(posture: NDArray[np.float64]) -> Integers:
     return result.astype(np.int64)
 
 
-@dataclass(frozen=True)
-class LimbSpreads:
+class LimbSpreads(NamedTuple):
     """How much each limb moves over a segment.
 
     Attributes:
@@ -106,6 +105,21 @@ class LimbSpreads:
     def left_handed(self) -> bool:
         """Whether the left arm acts."""
         return self.acting_hand == "left"
+
+
+def left_arm_acts(before: Integers, after: Integers, first: int) -> bool:
+    """Tell whether the left arm acts in some frames.
+
+    Args:
+        before: sums over all frames before them, of which those from the `first` on are moments of the limbs (4 * 8).
+        after: the same with them.
+        first: an index.
+    """
+    if steps is not None:
+        acts: bool = steps.left_arm_acts(before, after, first, _JITTER_MM, _FACTOR)
+        return acts
+    moments = (after - before)[first : first + LIMBS * MOMENTS]
+    return LimbSpreads.of(moments.reshape(LIMBS, MOMENTS)).left_handed
 
 
 def _spread(limb: Sequence[int]) -> float:

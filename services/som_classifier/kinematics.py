@@ -1,7 +1,7 @@
 """Smoothed positions and velocities of one agent's joints, frame by frame, and how far a person moves in a segment."""
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +22,7 @@ LAG_TIME_CONSTANT_S = 0.125
 """Time constant of the second low-pass: at a constant velocity it lags behind by velocity times this."""
 
 
-@dataclass(frozen=True, eq=False)
-class Kinematics:
+class Kinematics(NamedTuple):
     """Position and velocity of each joint in the upright frame; NaN where a joint is missing.
 
     Attributes:
@@ -45,8 +44,9 @@ class KinematicsFilter:
 
     def __init__(self) -> None:
         self._stamp_ns: int | None = None
-        self._known = np.ones(0, dtype=bool)
-        self._before = self._speed = self._smooth = self._lagging = np.zeros((0, 3))
+        self._known: Mask | None = None  # None where all are
+        self._before = np.zeros((0, 3))
+        self._state = np.zeros((3, 0, 3))
 
     def step(self, stamp_ns: int, joints: Array) -> Kinematics:
         """Receive the next frame's joints and return their kinematics.
@@ -56,61 +56,73 @@ class KinematicsFilter:
             joints: (15, 3), upright, metres, NaN where missing.
         """
         last_ns, self._stamp_ns = self._stamp_ns, stamp_ns
-        known = ~np.isnan(joints[:, 0])
         if last_ns is None or not 0 < stamp_ns - last_ns <= GAP_NS:
-            self._known = known
-            self._before = self._smooth = self._lagging = np.nan_to_num(joints)
-            self._speed = np.zeros(joints.shape)
+            self._restart(joints)
             return Kinematics(joints, joints - joints)
-        if known.all() and self._known.all():
-            velocity = self._advance(joints, (stamp_ns - last_ns) / SECOND_NS)
-            return Kinematics(self._smooth, velocity)
-        return self._advance_known(joints, known, (stamp_ns - last_ns) / SECOND_NS)
+        elapsed_s = (stamp_ns - last_ns) / SECOND_NS
+        advanced = self._advanced(joints, elapsed_s) if self._known is None else None
+        if advanced is None:
+            return self._advance_known(joints, ~np.isnan(joints[:, 0]), elapsed_s)
+        self._before, self._state = joints, advanced[:3]
+        return Kinematics(advanced[1], advanced[3])
 
-    def _advance(self, joints: Array, elapsed_s: float) -> Array:
-        """Advance the filter; return the velocities (15, 3)."""
+    def _restart(self, joints: Array) -> None:
+        known = ~np.isnan(joints[:, 0])
+        self._known = None if known.all() else known
+        self._before = np.nan_to_num(joints)
+        self._state = np.stack([np.zeros(joints.shape), self._before, self._before])
+
+    def _advanced(self, joints: Array, elapsed_s: float) -> Array | None:
+        """Return speeds, smooth and lagging positions, and velocities of the next frame, (4, 15, 3).
+
+        Return None where a joint is missing.
+        """
         if steps is None:
-            return self._advanced(joints, elapsed_s)
+            return None if np.isnan(joints[:, 0]).any() else self._advanced_in_numpy(joints, elapsed_s)
         joints, advanced = np.ascontiguousarray(joints), np.empty((4, *joints.shape))
         gain, decay = 1 - math.exp(-elapsed_s / SPEED_TIME_CONSTANT_S), math.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
-        steps.smoothed(
-            joints, self._before, self._speed, self._smooth, self._lagging, elapsed_s, gain, STILL_TIME_CONSTANT_S,
-            STILL_SPEED_MPS, LAG_TIME_CONSTANT_S, decay, advanced,
+        known = steps.smoothed(
+            joints, self._before, self._state, elapsed_s, gain, STILL_TIME_CONSTANT_S, STILL_SPEED_MPS,
+            LAG_TIME_CONSTANT_S, decay, advanced,
         )  # fmt: skip
-        self._before = joints
-        self._speed, self._smooth, self._lagging = advanced[:3]
-        velocity: Array = advanced[3]
-        return velocity
+        return advanced if known else None
 
-    def _advanced(self, joints: Array, elapsed_s: float) -> Array:
+    def _advanced_in_numpy(self, joints: Array, elapsed_s: float) -> Array:
+        speed, smooth, lagging = self._state
+        advanced = np.empty((4, *joints.shape))
         velocity = (joints - self._before) / elapsed_s
-        self._speed = self._speed + (1 - np.exp(-elapsed_s / SPEED_TIME_CONSTANT_S)) * (velocity - self._speed)
-        speeds = np.sqrt(np.einsum("ij,ij->i", self._speed, self._speed))
+        velocity -= speed
+        velocity *= 1 - math.exp(-elapsed_s / SPEED_TIME_CONSTANT_S)
+        np.add(speed, velocity, out=advanced[0])
+        speeds = np.sqrt(np.einsum("ij,ij->i", advanced[0], advanced[0]))
         gains = 1 - np.exp(elapsed_s / -STILL_TIME_CONSTANT_S * (1 + speeds / STILL_SPEED_MPS))
-        self._before = joints
-        step = gains[:, None] * (joints - self._smooth)
-        self._lagging = _lagged(self._lagging, self._smooth, step, elapsed_s)
-        self._smooth = self._smooth + step
-        return self._smooth - self._lagging
+        step = joints - smooth
+        step *= gains[:, None]
+        np.add(smooth, step, out=advanced[1])
+        advanced[2] = _lagged(lagging, smooth, step, elapsed_s)
+        np.subtract(advanced[1], advanced[2], out=advanced[3])
+        return advanced
 
     def _advance_known(self, joints: Array, known: Mask, elapsed_s: float) -> Kinematics:
         """Advance while joints are missing: their state is kept, and the filters of those that come back restart."""
-        returned = (known & ~self._known)[:, None]
+        returned = (np.zeros_like(known) if self._known is None else known & ~self._known)[:, None]
         present = np.where(known[:, None], joints, self._before)
+        speed, smooth, lagging = self._state
         self._before = np.where(returned, present, self._before)
-        self._smooth = np.where(returned, present, self._smooth)
-        self._lagging = np.where(returned, present, self._lagging)
-        self._speed = np.where(known[:, None] & ~returned, self._speed, 0.0)
-        self._known = known
-        velocity = self._advance(present, elapsed_s)
+        smooth, lagging = np.where(returned, present, smooth), np.where(returned, present, lagging)
+        self._state = np.stack([np.where(known[:, None] & ~returned, speed, 0.0), smooth, lagging])
+        self._known = None if known.all() else known
+        advanced = self._advanced(present, elapsed_s)
+        assert advanced is not None
+        self._before, self._state = present, advanced[:3]
         missing = np.where(known, 0.0, np.nan)[:, None]
-        return Kinematics(self._smooth + missing, velocity + missing)
+        return Kinematics(advanced[1] + missing, advanced[3] + missing)
 
 
 def _lagged(lagging: Array, start: Array, step: Array, elapsed_s: float) -> Array:
     """Advance a low-pass (15, 3) whose input moves linearly from `start` by `step`: exact at any frame rate."""
     behind = LAG_TIME_CONSTANT_S / elapsed_s * step
-    lagged: Array = start + step - behind + (lagging - start + behind) * np.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
+    lagged: Array = start + step - behind + (lagging - start + behind) * math.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
     return lagged
 
 

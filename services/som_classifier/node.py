@@ -166,16 +166,16 @@ class SomClassifier:
                 yield from self._ongoing(spotted.ongoing, stream, posture)
 
     def _partial(self, segment: OpenSegment, stream: Stream, posture: Posture) -> Iterator[Action]:
-        frames = stream.between(segment.start_ns or 0, posture.stamp_ns)
-        recognition = self._recognise(frames, complete=False)
+        seen = stream.stretch(segment.start_ns or 0, posture.stamp_ns)
+        recognition = self._recognise(seen.usable, complete=False)
         if recognition is not None:
-            yield partial_action(segment, recognition, frames, posture)
+            yield partial_action(segment, recognition, seen, posture)
 
     def _found(self, found: SpottedSegment, stream: Stream, agent: int) -> Iterator[Message]:
         """Mark and answer a segment that was found, unless it is not to be published; count what becomes of it."""
         search = stream.search
         closed = stream.cut(OpenSegment(search.next_id, found.start_ns, agent, end_ns=found.end_ns))
-        recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
+        recognition = None if closed.reason else self._recognise(closed.usable, complete=True)
         fate = self._fate(closed, recognition, search)
         self.counters.counts.update(["found", fate])
         if fate == "told":
@@ -206,22 +206,20 @@ class SomClassifier:
         search, bounds = stream.search, (ongoing.start_ns, posture.stamp_ns)
         hindrance = search.admission.hindrance(ongoing.label, ongoing.start_ns)
         if hindrance is None and not self._segmenter.is_marked(posture.agent, *bounds):
-            yield ongoing_action(search.next_id, ongoing, stream.between(*bounds), posture)
+            yield ongoing_action(search.next_id, ongoing, stream.stretch(*bounds), posture)
 
-    def _recognise(self, frames: list[Frame], complete: bool) -> Recognition | None:
-        usable = [frame for frame in frames if frame.valid]
+    def _recognise(self, usable: list[Frame], complete: bool) -> Recognition | None:
         if self._model is None or len(usable) < self._model.min_frames:
             return None
         return self._model.recognise(usable, complete)
 
     def _final(self, closed: ClosedSegment) -> Action:
-        recognition = None if closed.reason else self._recognise(closed.frames, complete=True)
+        recognition = None if closed.reason else self._recognise(closed.usable, complete=True)
         reason = closed.reason
         if reason is None and self._model is None:
             reason = "no model"
         elif reason is None and self._model is not None and recognition is None:
-            frames = sum(frame.valid for frame in closed.frames)
-            reason = f"too few frames: {frames}, at least {self._model.min_frames} are needed"
+            reason = f"too few frames: {len(closed.usable)}, at least {self._model.min_frames} are needed"
         if reason:
             self.counters.reject("rejected_segment", f"{closed.segment_id}: {reason}")
         return self._answer(closed, recognition, reason)
@@ -229,7 +227,6 @@ class SomClassifier:
     def _answer(self, closed: ClosedSegment, recognition: Recognition | None, reason: str | None) -> Action:
         explained: dict[str, Any] = {}
         if recognition is not None and self._model is not None and self._publish_maps:
-            usable = [frame for frame in closed.frames if frame.valid]
-            maps = {name: tensor(activity) for name, activity in self._model.maps(usable).items()}
-            explained = {"maps": maps, "trace": tensor(self._model.trace(usable))}
+            maps = {name: tensor(activity) for name, activity in self._model.maps(closed.usable).items()}
+            explained = {"maps": maps, "trace": tensor(self._model.trace(closed.usable))}
         return final_action(closed, recognition, reason, self._sensor, session_id=self._session, **explained)

@@ -7,6 +7,7 @@ of two prefix sums, wherever the summation began.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,8 +40,7 @@ def running_sums(activities: Floats) -> Sums:
     return sums
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Prefix:
+class Prefix(NamedTuple):
     """Sums over all frames up to an instant between two frames.
 
     Attributes:
@@ -90,7 +90,7 @@ class PrefixSums:
     def _sums(self, at: Sequence[int]) -> Sums:
         return np.concatenate([self.sums[k] for k in at]).reshape(len(at), -1)
 
-    def instants_of(self, progress: Sequence[float]) -> Floats:
+    def instants_of(self, progress: Sequence[float] | Floats) -> Floats:
         """Return the instants, as fractional frame numbers from 0 to n, at which a segment reaches given progress.
 
         Progress rises from 0 to 1: half of it with time, half with the distance that the body parts travel; with time
@@ -121,7 +121,7 @@ class Pyramid:
     levels: tuple[int, ...]
     overlap: float
 
-    @property
+    @cached_property
     def cells(self) -> int:
         """How many cells there are in all."""
         return sum(self.levels)
@@ -137,29 +137,29 @@ class Pyramid:
         if steps is None or len(segment) > MOST_FRAMES:
             return self._vector(segment)
         vector = np.empty(self.cells * len(segment.sums[0]), np.float32)
-        borders, begins, ends = self._compiled
-        steps.pooled(segment.sums, segment.travelled_um, borders, begins, ends, SCALE, vector)
+        steps.pooled(segment.sums, segment.travelled_um, *self.compiled, SCALE, vector)
         return vector
 
     def _vector(self, segment: PrefixSums) -> NDArray[np.float32]:
         at = segment.instants_of(self._borders)
-        below = np.minimum(at.astype(np.intp), len(segment) - 1)
+        below = [min(int(instant), len(segment) - 1) for instant in at.tolist()]
         sums, growth = (
-            segment.since_start([*below.tolist(), *(below + 1).tolist()]).astype(np.float32).reshape(2, len(below), -1)
+            segment.since_start([*below, *[k + 1 for k in below]]).astype(np.float32).reshape(2, len(below), -1)
         )
         growth -= sums
         growth *= (at - below).astype(np.float32)[:, None]
         sums += growth
-        pooled: NDArray[np.float32] = sums[self._ends]
-        pooled -= sums[self._begins]
+        pooled: NDArray[np.float32] = sums.take(self._ends, axis=0)
+        pooled -= sums.take(self._begins, axis=0)
         pooled /= ((at[self._ends] - at[self._begins]) * SCALE).astype(np.float32)[:, None]
         np.sqrt(np.sqrt(pooled, out=pooled), out=pooled)
         return pooled.ravel()
 
     @cached_property
-    def _compiled(self) -> tuple[Floats, NDArray[np.int32], NDArray[np.int32]]:
+    def compiled(self) -> tuple[bytes, bytes, bytes]:
         """Borders, and at which of them each cell begins and ends, as the compiled steps read them."""
-        return np.array(self._borders), self._begins.astype(np.int32), self._ends.astype(np.int32)
+        begins, ends = (each.astype(np.int32).tobytes() for each in (self._begins, self._ends))
+        return self._borders.tobytes(), begins, ends
 
     @cached_property
     def _spans(self) -> list[tuple[float, float]]:
@@ -171,16 +171,16 @@ class Pyramid:
         ]
 
     @cached_property
-    def _borders(self) -> list[float]:
-        """Where cells begin or end, each once, rising."""
-        return sorted({border for span in self._spans for border in span})
+    def _borders(self) -> Floats:
+        """Where cells begin or end, each once, rising, shape (borders,)."""
+        return np.unique(self._spans)
 
     @cached_property
     def _begins(self) -> Indices:
         """At which of the borders each cell begins, shape (cells,)."""
-        return np.array([self._borders.index(begin) for begin, _ in self._spans])
+        return self._borders.searchsorted([begin for begin, _ in self._spans])
 
     @cached_property
     def _ends(self) -> Indices:
         """At which of the borders each cell ends, shape (cells,)."""
-        return np.array([self._borders.index(end) for _, end in self._spans])
+        return self._borders.searchsorted([end for _, end in self._spans])

@@ -22,6 +22,7 @@ from som_classifier.frame_activity import (
     left_handed,
     mean_log_error,
     most_moved_part,
+    pooled_windows,
     segment_sums,
 )
 from som_classifier.frames import Frame
@@ -179,12 +180,8 @@ class PyramidModel(Model):
             firsts: the index of each window's first frame.
         """
         activities = [frame.activity for frame in frames]
-        sides = [int(self.reads_in_mirror((activities[first], activities[-1]))) for first in firsts]
-        sums = {side: segment_sums(activities, bool(side)) for side in set(sides)}
-        return [
-            self.pyramid.vector(sums[side].between(first, len(frames)))
-            for side, first in zip(sides, firsts, strict=True)
-        ]
+        in_mirror = [self.reads_in_mirror((activities[first], activities[-1])) for first in firsts]
+        return pooled_windows(self.pyramid, activities, firsts, in_mirror)
 
     def prefix_sums(self, activities: Sequence[FrameActivity]) -> PrefixSums:
         """Return a segment's prefix sums, of the actor as seen or mirrored."""
@@ -235,9 +232,12 @@ class PyramidModel(Model):
         whole = self.stages.weights(0.0, complete=True)
         return self.opinion.blended(self.stages.scores(evidence.pooled, whole), evidence.features)
 
-    def scores(self, activities: Sequence[FrameActivity], stages: Sequence[float]) -> NDArray[np.float32]:
+    def scores(self, activities: list[FrameActivity], stages: Sequence[float]) -> NDArray[np.float32]:
         """Return the actions' scores on the discriminants, weighted by stage, shape (actions,)."""
-        return self.stages.scores(self.pyramid.vector(self.prefix_sums(activities)), stages)
+        return self.stages.scores(self._pooled(activities), stages)
+
+    def _pooled(self, activities: list[FrameActivity]) -> NDArray[np.float32]:
+        return pooled_windows(self.pyramid, activities, [0], [self.reads_in_mirror(activities)])[0]
 
     def evidence(self, frames: Sequence[Frame]) -> Evidence:
         """Return what a complete segment is judged by, of the actor as seen or mirrored."""
@@ -247,7 +247,7 @@ class PyramidModel(Model):
         postures = stacked(list(map(np.ascontiguousarray, of_frames)), *of_frames[0].shape)
         as_read = mirrored(postures) if self.reads_in_mirror(activities) else postures
         features = self.opinion.convolutions.features(resampled(as_read))
-        pooled = self.pyramid.vector(self.prefix_sums(activities))
+        pooled = self._pooled(activities)
         means = averaged(stamps_ns, postures)
         return Evidence(pooled, features, log_movements(means), movement_m(means))
 

@@ -67,17 +67,16 @@ class Segmenter:
         order, frame = self.streams.add(posture)
         stream = self.streams.of(posture.agent)
         late = stream is not None and stream.is_too_late(posture.stamp_ns)
-        detail = f"posture of agent {posture.agent} at {posture.stamp_ns}"
         if frame is None:
-            self._counters.reject("late" if late else "stale_stamp", detail)
+            self._counters.reject("late" if late else "stale_stamp", _name(posture))
             return None, closed
         if posture.valid and not frame.valid:
-            self._counters.reject("bad_posture", f"{detail}: missing, non-finite or absurd joints or motion")
+            self._counters.reject("bad_posture", f"{_name(posture)}: missing, non-finite or absurd joints or motion")
         if order is Order.RESTART:
             closed += self._close_all()
             self._marked.clear()
         elif late:
-            self._counters.reject("late", f"{detail}, after its segment was answered")
+            self._counters.reject("late", f"{_name(posture)}, after its segment was answered")
         self._flow.note()
         for segment in self._open.values():
             if segment.start_ns is None:
@@ -255,3 +254,7 @@ class Segmenter:
             else self._close(segment)
             for segment in list(self._open.values())
         ]
+
+
+def _name(posture: Posture) -> str:
+    return f"posture of agent {posture.agent} at {posture.stamp_ns}"

@@ -5,6 +5,7 @@ A segment is the frames with start <= stamp <= end; which belong to it is decide
 
 from dataclasses import dataclass
 from enum import Enum
+from functools import cached_property
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.messages import Hand, Segment
@@ -130,6 +131,11 @@ class ClosedSegment:
     frames: list[Frame]
     missed: int
     reason: str | None
+
+    @cached_property
+    def usable(self) -> list[Frame]:
+        """The valid frames."""
+        return [frame for frame in self.frames if frame.valid]
 
 
 def with_cause(reason: str, cause: str | None) -> str:

@@ -39,6 +39,10 @@ class StageDiscriminants:
         """The axes of each stage, one after the other in memory: products with one vector are then faster."""
         return [np.asfortranarray(axes) for axes in self.axes]
 
+    @cached_property
+    def _log_fractions(self) -> list[float]:
+        return [math.log(fraction) for fraction in self.fractions]
+
     def weights(self, elapsed_s: float, complete: bool) -> Sequence[float]:
         """Return the probability of each stage: 1 for the last where the segment is complete, else by elapsed time.
 
@@ -52,10 +56,13 @@ class StageDiscriminants:
         if complete:
             return [0.0] * (len(self.fractions) - 1) + [1.0]
         log_share = math.log(max(elapsed_s, SHORTEST_S)) - self.log_duration_mean
-        z2s = [((log_share - math.log(fraction)) / self.log_duration_sd) ** 2 for fraction in self.fractions]
-        likely = [math.exp(0.5 * (min(z2s) - z2)) for z2 in z2s]
-        kept = [weight if weight >= NEGLIGIBLE * sum(likely) else 0.0 for weight in likely]
-        return [weight / sum(kept) for weight in kept]
+        z2s = [((log_share - log_fraction) / self.log_duration_sd) ** 2 for log_fraction in self._log_fractions]
+        least = min(z2s)
+        likely = [math.exp(0.5 * (least - z2)) for z2 in z2s]
+        negligible = NEGLIGIBLE * sum(likely)
+        kept = [weight if weight >= negligible else 0.0 for weight in likely]
+        whole = sum(kept)
+        return [weight / whole for weight in kept]
 
     def scores(self, vector: NDArray[np.float32], weights: Sequence[float]) -> NDArray[np.float32]:
         """Return the weighted mean of the stages' scores: about 1 for the action done, 0 for the others, (actions,).

@@ -9,7 +9,7 @@ from actum.losses import StreamBuffer, longest_loss_s
 from actum.messages import Posture
 from actum.node import SECOND_NS, Counters
 from actum.stamps import LostFrames, Order, StampGuard
-from som_classifier.frames import Frame, frame_of
+from som_classifier.frames import Frame, Stretch, frame_of
 from som_classifier.kinematics import KinematicsFilter
 from som_classifier.segments import ClosedSegment, OpenSegment, with_cause
 from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
@@ -41,6 +41,7 @@ class Stream(StreamBuffer[Frame]):
         self._lost = LostFrames()
         self._smoothing = KinematicsFilter()
         self._encode = encode
+        self._flawed_ns = -1
 
     def use(self, encode: Encode) -> None:
         """Encode all frames, those kept and those to come, by this encoder."""
@@ -55,8 +56,11 @@ class Stream(StreamBuffer[Frame]):
             return order, None
         if order is Order.RESTART:
             self.clear()
+            self._flawed_ns = -1
             self.search.restart()
         frame = frame_of(posture, self._lost.before(posture.seq, order), self._smoothing)
+        if frame.missing or frame.missed or not frame.valid:
+            self._flawed_ns = frame.stamp_ns
         self._encode_valid(frame)
         self.append(frame)
         return order, frame
@@ -64,6 +68,11 @@ class Stream(StreamBuffer[Frame]):
     def _encode_valid(self, frame: Frame) -> None:
         if self._encode is not None and frame.valid:
             frame.activity = self._encode(frame)
+
+    def stretch(self, start_ns: int, end_ns: int) -> Stretch:
+        """Sum up the frames with start <= stamp <= end: at once where the newest that lacks anything is before them."""
+        frames = self.between(start_ns, end_ns)
+        return Stretch(frames, 0, []) if self._flawed_ns < start_ns else Stretch.of(frames)
 
     def cut(self, segment: OpenSegment) -> ClosedSegment:
         """Close a segment that has an end, with those of its frames that have come."""
@@ -226,9 +235,9 @@ class Streams:
         if self.newest_ns is None or abs(stamp_ns - self.newest_ns) > MEMORY_NS:
             self.newest_ns = stamp_ns
         self.newest_ns = max(stamp_ns, self.newest_ns)
-        for agent, stream in list(self._streams.items()):
-            if abs(stream.newest_ns - self.newest_ns) > MEMORY_NS:
-                del self._streams[agent]
+        newest_ns, streams = self.newest_ns, self._streams
+        for agent in [agent for agent, each in streams.items() if abs(each.newest_ns - newest_ns) > MEMORY_NS]:
+            del streams[agent]
 
 
 def _is_broken(before: Frame, then: Frame) -> bool:

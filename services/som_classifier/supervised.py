@@ -52,7 +52,7 @@ class SupervisedLayer:
 
     def cosines(self, x: Floats) -> Floats:
         """Return each neuron's activity x·w / ‖x‖‖w‖ for x (inputs,), shape (actions,)."""
-        cosines: Floats = self.weights @ x / np.sqrt(x @ x)
+        cosines: Floats = self.weights.dot(x) / np.sqrt(x.dot(x))
         return cosines
 
     def train(

@@ -10,11 +10,21 @@
 
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__)
 #define VECTORISED __attribute__((target_clones("avx2", "default"))) /* the processor's own width, chosen at run time */
+#define FUSED __attribute__((target("avx2,fma")))
+#define HAS_FUSED (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
 #else
 #define VECTORISED
+#define FUSED
+#ifdef __aarch64__
+#define HAS_FUSED 1
+#else
+#define HAS_FUSED 0
 #endif
+#endif
+#define INLINE static inline __attribute__((always_inline))
 
-enum { SIDES = 2, CHANNELS = 4, JOINTS = 15, COORDINATES = 45, PARTS = 5, LIMBS = 4, MOMENTS = 8, MOST_INSTANTS = 64 };
+enum { SIDES = 2, CHANNELS = 4, JOINTS = 15, COORDINATES = 45, PARTS = 5, LIMBS = 4, MOMENTS = 8, MOST_INSTANTS = 64, LANES = 8, BLOCK = 32,
+       MOST_INPUTS = 3 * COORDINATES };
 
 /* Release the buffers that were taken, and return None, or NULL where an error is set. */
 static PyObject *released(Py_buffer *buffers, int count)
@@ -26,14 +36,56 @@ static PyObject *released(Py_buffer *buffers, int count)
     Py_RETURN_NONE;
 }
 
+/* Prefix sums of a segment: rows of sums with the distances travelled, or the frames' activities. Of an activity the
+   first item is the prefix before the frame, the second that after it; of a prefix the first are the sums of both sides,
+   the second is the distance. */
+typedef struct {
+    PyObject *list;
+    const int64_t *travelled_um; /* NULL where the list holds activities */
+    Py_ssize_t first, frames;
+    int side;
+} Segment;
+
+static PyObject *prefix_of(const Segment *segment, Py_ssize_t k)
+{
+    Py_ssize_t last = segment->first + (k ? k - 1 : 0);
+    return PyTuple_GetItem(PyList_GetItem(segment->list, last), k ? 1 : 0);
+}
+
+static double travelled(const Segment *segment, Py_ssize_t k)
+{
+    if (segment->travelled_um != NULL)
+        return (double)segment->travelled_um[k];
+    PyObject *prefix = prefix_of(segment, k);
+    return prefix == NULL ? NAN : (double)PyLong_AsLongLong(PyTuple_GetItem(prefix, 1));
+}
+
+/* Take the buffer of the sums before frame k, which must have so many units; -1 where an error is set. */
+static int take_row(const Segment *segment, Py_ssize_t k, Py_ssize_t units, Py_buffer *row)
+{
+    PyObject *sums = NULL;
+    if (segment->travelled_um != NULL)
+        Py_XINCREF(sums = PyList_GetItem(segment->list, k));
+    else if ((sums = prefix_of(segment, k)) != NULL)
+        sums = PySequence_GetItem(PyTuple_GetItem(sums, 0), segment->side);
+    int failed = sums == NULL || PyObject_GetBuffer(sums, row, PyBUF_SIMPLE) < 0;
+    Py_XDECREF(sums);
+    if (!failed && row->len != units * 4) {
+        PyErr_SetString(PyExc_ValueError, "the sums are not of the length of a cell");
+        PyBuffer_Release(row);
+        failed = 1;
+    }
+    return failed ? -1 : 0;
+}
+
 /* The instants, as fractional frame numbers, at which a segment reaches the progress asked for: np.interp of rising
    `reached`, which is half time and half way. */
-static double instant_of(double progress, const int64_t *travelled_um, Py_ssize_t frames)
+static double instant_of(double progress, const Segment *segment, double begin, double moved)
 {
-    double begin = (double)travelled_um[0], moved = (double)travelled_um[frames] - begin;
+    Py_ssize_t frames = segment->frames;
     double per_frame = moved > 0 ? 0.5 / (double)frames : 1.0 / (double)frames, per_um = moved > 0 ? 0.5 / moved : 0.0;
     Py_ssize_t low = 0, high = frames;
-#define REACHED(k) (per_frame * (double)(k) + per_um * ((double)travelled_um[k] - begin))
+#define REACHED(k) (per_frame * (double)(k) + per_um * (travelled(segment, k) - begin))
     if (progress >= REACHED(frames))
         return (double)frames;
     if (progress < REACHED(0))
@@ -66,6 +118,42 @@ VECTORISED static void fourth_root_of_mean(const float *begin, const float *end,
         out[u] = sqrtf(sqrtf((end[u] - begin[u]) / length));
 }
 
+/* A pyramid: its borders, and at which of them each cell begins and ends. */
+typedef struct {
+    const double *borders;
+    const int32_t *begins, *ends;
+    Py_ssize_t count, cells;
+    double scale;
+} Cells;
+
+/* Write the fourth root of each cell's mean activity, cells * units; `at` and `at_border` are room for each border. */
+static void pool(const Segment *segment, const Cells *cells, Py_ssize_t units, double *at, float *at_border, float *out)
+{
+    double begin = travelled(segment, 0), moved = travelled(segment, segment->frames) - begin;
+    Py_buffer start, below, above;
+    if (PyErr_Occurred() || take_row(segment, 0, units, &start) < 0)
+        return;
+    for (Py_ssize_t k = 0; k < cells->count && !PyErr_Occurred(); k++) {
+        at[k] = instant_of(cells->borders[k], segment, begin, moved);
+        Py_ssize_t row = (Py_ssize_t)at[k];
+        if (row > segment->frames - 1)
+            row = segment->frames - 1;
+        if (PyErr_Occurred() || take_row(segment, row, units, &below) < 0)
+            break;
+        if (take_row(segment, row + 1, units, &above) == 0) {
+            sum_at_border(start.buf, below.buf, above.buf, (float)(at[k] - (double)row), at_border + k * units, units);
+            PyBuffer_Release(&above);
+        }
+        PyBuffer_Release(&below);
+    }
+    PyBuffer_Release(&start);
+    for (Py_ssize_t c = 0; c < cells->cells && !PyErr_Occurred(); c++) {
+        int32_t from = cells->begins[c], to = cells->ends[c];
+        float length = (float)((at[to] - at[from]) * cells->scale);
+        fourth_root_of_mean(at_border + from * units, at_border + to * units, length, out + c * units, units);
+    }
+}
+
 PyDoc_STRVAR(pooled_doc,
     "pooled(sums, travelled_um, borders, begins, ends, scale, out)\n--\n\n"
     "Write the fourth root of each cell's mean activity, (cells * units,), of a segment's prefix sums.");
@@ -76,40 +164,51 @@ static PyObject *pooled(PyObject *module, PyObject *args)
     double scale;
     if (!PyArg_ParseTuple(args, "O!y*y*y*y*dw*", &PyList_Type, &sums, &b[0], &b[1], &b[2], &b[3], &scale, &b[4]))
         return NULL;
-    const int64_t *travelled_um = b[0].buf;
-    const double *borders = b[1].buf;
-    const int32_t *begins = b[2].buf, *ends = b[3].buf;
-    float *out = b[4].buf;
-    Py_ssize_t frames = b[0].len / 8 - 1, count = b[1].len / 8, cells = b[2].len / 4, units = b[4].len / 4 / cells;
-    double *at = PyMem_Malloc(count * sizeof(double));
-    float *at_border = PyMem_Malloc(count * units * sizeof(float));
+    Cells cells = {b[1].buf, b[2].buf, b[3].buf, b[1].len / 8, b[2].len / 4, scale};
+    Segment segment = {sums, b[0].buf, 0, b[0].len / 8 - 1, 0};
+    Py_ssize_t units = b[4].len / 4 / cells.cells;
+    double *at = PyMem_Malloc(cells.count * sizeof(double));
+    float *at_border = PyMem_Malloc(cells.count * units * sizeof(float));
     if (at == NULL || at_border == NULL)
         PyErr_NoMemory();
-    else if (PyList_Size(sums) != frames + 1 || frames < 1)
+    else if (PyList_Size(sums) != segment.frames + 1 || segment.frames < 1)
         PyErr_SetString(PyExc_ValueError, "the sums are not as many as the frames and one");
-    for (Py_ssize_t k = 0; k < count && !PyErr_Occurred(); k++) {
-        Py_buffer row[3];
-        at[k] = instant_of(borders[k], travelled_um, frames);
-        Py_ssize_t below = (Py_ssize_t)at[k], n = 0;
-        if (below > frames - 1)
-            below = frames - 1;
-        const Py_ssize_t rows[3] = {0, below, below + 1};
-        while (n < 3 && PyObject_GetBuffer(PyList_GetItem(sums, rows[n]), &row[n], PyBUF_SIMPLE) == 0)
-            n++;
-        if (n == 3 && (row[0].len != units * 4 || row[1].len != units * 4 || row[2].len != units * 4))
-            PyErr_SetString(PyExc_ValueError, "the sums are not of the length of a cell");
-        else if (n == 3)
-            sum_at_border(row[0].buf, row[1].buf, row[2].buf, (float)(at[k] - (double)below), at_border + k * units, units);
-        while (n-- > 0)
-            PyBuffer_Release(&row[n]);
-    }
-    for (Py_ssize_t c = 0; c < cells && !PyErr_Occurred(); c++) {
-        float length = (float)((at[ends[c]] - at[begins[c]]) * scale);
-        fourth_root_of_mean(at_border + begins[c] * units, at_border + ends[c] * units, length, out + c * units, units);
-    }
+    else
+        pool(&segment, &cells, units, at, at_border, b[4].buf);
     PyMem_Free(at);
     PyMem_Free(at_border);
     return released(b, 5);
+}
+
+PyDoc_STRVAR(pooled_windows_doc,
+    "pooled_windows(activities, firsts, sides, borders, begins, ends, scale, out)\n--\n\n"
+    "Write the same for several windows, (windows, cells * units), that end with the last of the frames' activities.");
+static PyObject *pooled_windows(PyObject *module, PyObject *args)
+{
+    PyObject *activities, *firsts, *sides;
+    Py_buffer b[4];
+    double scale;
+    if (!PyArg_ParseTuple(args, "O!O!O!y*y*y*dw*", &PyList_Type, &activities, &PyList_Type, &firsts, &PyList_Type, &sides,
+                          &b[0], &b[1], &b[2], &scale, &b[3]))
+        return NULL;
+    Cells cells = {b[0].buf, b[1].buf, b[2].buf, b[0].len / 8, b[1].len / 4, scale};
+    Py_ssize_t windows = PyList_Size(firsts), row = windows ? b[3].len / 4 / windows : 0, units = row / cells.cells;
+    double *at = PyMem_Malloc(cells.count * sizeof(double));
+    float *at_border = PyMem_Malloc(cells.count * units * sizeof(float) + 1);
+    if (at == NULL || at_border == NULL)
+        PyErr_NoMemory();
+    for (Py_ssize_t w = 0; w < windows && !PyErr_Occurred(); w++) {
+        Py_ssize_t first = PyLong_AsSsize_t(PyList_GetItem(firsts, w));
+        int side = PyLong_AsLong(PyList_GetItem(sides, w)) != 0;
+        Segment segment = {activities, NULL, first, PyList_Size(activities) - first, side};
+        if (!PyErr_Occurred() && (first < 0 || segment.frames < 1))
+            PyErr_SetString(PyExc_ValueError, "a window holds no frame");
+        if (!PyErr_Occurred())
+            pool(&segment, &cells, units, at, at_border, (float *)b[3].buf + w * row);
+    }
+    PyMem_Free(at);
+    PyMem_Free(at_border);
+    return released(b, 4);
 }
 
 /* NumPy's pairwise sum of contiguous numbers. */
@@ -138,42 +237,75 @@ static float pairwise_sum(const float *x, Py_ssize_t n)
     return sum;
 }
 
-PyDoc_STRVAR(map_inputs_doc,
-    "map_inputs(posture, velocity, mirror, signs, minuend, subtrahend, weights, centre, out)\n--\n\n"
-    "Write what the maps are shown of a frame and of its mirror image, relative to their centres, (2, inputs).");
-static PyObject *map_inputs(PyObject *module, PyObject *args)
+/* Write what the maps are shown of a frame and of its mirror image, relative to their centres. */
+static void map_inputs(const double *posture, const double *velocity, const int32_t *mirror, const double *signs,
+                       const int32_t *minuend, const int32_t *subtrahend, const double *weights, const float *centre,
+                       float (*out)[MOST_INPUTS], Py_ssize_t inputs)
 {
-    Py_buffer b[9];
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*y*y*y*w*", &b[0], &b[1], &b[2], &b[3], &b[4], &b[5], &b[6], &b[7], &b[8]))
-        return NULL;
-    const int32_t *mirror = b[2].buf, *minuend = b[4].buf, *subtrahend = b[5].buf;
-    const double *signs = b[3].buf, *weights = b[6].buf;
-    const float *centre = b[7].buf;
-    float *out = b[8].buf;
     double row[SIDES][2 * COORDINATES];
-    memcpy(row[0], b[0].buf, sizeof row[0] / 2);
-    memcpy(row[0] + COORDINATES, b[1].buf, sizeof row[0] / 2);
+    memcpy(row[0], posture, sizeof row[0] / 2);
+    memcpy(row[0] + COORDINATES, velocity, sizeof row[0] / 2);
     for (int i = 0; i < 2 * COORDINATES; i++)
         row[1][i] = row[0][mirror[i]] * signs[i];
-    Py_ssize_t inputs = b[7].len / sizeof(float);
     for (int side = 0; side < SIDES; side++)
         for (Py_ssize_t i = 0; i < inputs; i++) {
             double value = row[side][minuend[i]];
             if (subtrahend[i] >= 0)
                 value = (value - row[side][subtrahend[i]]) * weights[i];
-            out[side * inputs + i] = (float)(value - (double)centre[i]);
+            out[side][i] = (float)(value - (double)centre[i]);
         }
-    return released(b, 9);
 }
 
-VECTORISED static float least_of_sums(const float *scores, const float *half_norms2, float *sums, Py_ssize_t units)
+/* The products of both sides' inputs with a map's weights, term after term. The weights are blocks of units, (blocks,
+   dim, BLOCK), with zeros for units beyond the last. BLAS adds a product without rounding it where the processor can. */
+INLINE void products_of(const float *seen, const float *image, const float *weights, Py_ssize_t dim, Py_ssize_t units,
+                        float *of_seen, float *of_image, int fused)
 {
-    float least = INFINITY;
-    for (Py_ssize_t u = 0; u < units; u++) {
-        sums[u] = scores[u] + half_norms2[u];
-        least = sums[u] < least ? sums[u] : least;
+    for (Py_ssize_t first = 0; first < units; first += BLOCK) {
+        float sums[SIDES][BLOCK] = {{0}};
+        size_t written = (units - first < BLOCK ? units - first : BLOCK) * sizeof(float);
+        for (Py_ssize_t k = 0; k < dim; k++, weights += BLOCK)
+            for (int u = 0; u < BLOCK; u++) {
+                sums[0][u] = fused ? fmaf(seen[k], weights[u], sums[0][u]) : sums[0][u] + seen[k] * weights[u];
+                sums[1][u] = fused ? fmaf(image[k], weights[u], sums[1][u]) : sums[1][u] + image[k] * weights[u];
+            }
+        memcpy(of_seen + first, sums[0], written);
+        memcpy(of_image + first, sums[1], written);
     }
-    return least;
+}
+
+FUSED static void fused_products(const float *seen, const float *image, const float *weights, Py_ssize_t dim,
+                                 Py_ssize_t units, float *of_seen, float *of_image)
+{
+    products_of(seen, image, weights, dim, units, of_seen, of_image, 1);
+}
+
+static void rounded_products(const float *seen, const float *image, const float *weights, Py_ssize_t dim, Py_ssize_t units,
+                             float *of_seen, float *of_image)
+{
+    products_of(seen, image, weights, dim, units, of_seen, of_image, 0);
+}
+
+VECTORISED static float least_of(const float *x, Py_ssize_t n)
+{
+    float least[LANES], of_all = INFINITY;
+    Py_ssize_t i = 0;
+    for (int lane = 0; lane < LANES; lane++)
+        least[lane] = INFINITY;
+    for (; i + LANES <= n; i += LANES)
+        for (int lane = 0; lane < LANES; lane++)
+            least[lane] = x[i + lane] < least[lane] ? x[i + lane] : least[lane];
+    for (; i < n; i++)
+        of_all = x[i] < of_all ? x[i] : of_all;
+    for (int lane = 0; lane < LANES; lane++)
+        of_all = least[lane] < of_all ? least[lane] : of_all;
+    return of_all;
+}
+
+VECTORISED static void add(const float *x, const float *y, float *sums, Py_ssize_t n)
+{
+    for (Py_ssize_t i = 0; i < n; i++)
+        sums[i] = x[i] + y[i];
 }
 
 VECTORISED static void scaled_excess(const float *sums, float least, float slope, float *out, Py_ssize_t units)
@@ -183,29 +315,39 @@ VECTORISED static void scaled_excess(const float *sums, float least, float slope
 }
 
 PyDoc_STRVAR(exponents_doc,
-    "exponents(scores, half_norms2, maps, sides, slopes, out)\n--\n\n"
-    "Write the exponents of a frame's activities, as seen and mirrored, (2, channels * units), from its scores.");
+    "exponents(posture, velocity, mirror, signs, minuend, subtrahend, weights, dims, centre, slopes, half_norms2, maps,\n"
+    "          sides, contrasts, out)\n--\n\n"
+    "Write the exponents of a frame's activities, as seen and mirrored, (2, channels * units).");
 static PyObject *exponents(PyObject *module, PyObject *args)
 {
-    Py_buffer b[6];
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*w*", &b[0], &b[1], &b[2], &b[3], &b[4], &b[5]))
+    Py_buffer b[15];
+    if (!PyArg_ParseTuple(args, "y*y*y*y*y*y*y*y*y*y*y*y*y*y*w*", &b[0], &b[1], &b[2], &b[3], &b[4], &b[5], &b[6], &b[7],
+                          &b[8], &b[9], &b[10], &b[11], &b[12], &b[13], &b[14]))
         return NULL;
-    const float *scores = b[0].buf, *half_norms2 = b[1].buf, *slopes = b[4].buf;
-    const int32_t *maps = b[2].buf, *sides = b[3].buf;
-    float *out = b[5].buf;
-    Py_ssize_t units = b[5].len / (Py_ssize_t)sizeof(float) / SIDES / CHANNELS;
-    Py_ssize_t width = b[1].len / (Py_ssize_t)sizeof(float);
-    float *sums = PyMem_Malloc(units * sizeof(float));
-    if (sums == NULL)
+    const int32_t *dims = b[7].buf, *maps = b[11].buf, *sides = b[12].buf;
+    const float *slopes = b[9].buf, *half_norms2 = b[10].buf, *contrasts = b[13].buf;
+    float *out = b[14].buf, inputs[SIDES][MOST_INPUTS];
+    Py_ssize_t units = b[14].len / (Py_ssize_t)sizeof(float) / SIDES / CHANNELS, count = b[8].len / (Py_ssize_t)sizeof(float);
+    Py_ssize_t width = b[10].len / (Py_ssize_t)sizeof(float), input = 0, padded = (units + BLOCK - 1) / BLOCK * BLOCK;
+    float *scores = PyMem_Malloc((SIDES * width + units) * sizeof(float)), *sums = scores + SIDES * width;
+    if (scores == NULL)
         PyErr_NoMemory();
-    for (int block = 0; block < SIDES * CHANNELS && sums != NULL; block++) {
+    else if (count > MOST_INPUTS || b[9].len < count * padded * (Py_ssize_t)sizeof(float))
+        PyErr_SetString(PyExc_ValueError, "more inputs than the compiled step has room for, or than there are weights");
+    else
+        map_inputs(b[0].buf, b[1].buf, b[2].buf, b[3].buf, b[4].buf, b[5].buf, b[6].buf, b[8].buf, inputs, count);
+    for (Py_ssize_t map = 0; map < width / units && !PyErr_Occurred(); input += dims[map++])
+        (HAS_FUSED ? fused_products : rounded_products)(inputs[0] + input, inputs[1] + input, slopes + input * padded,
+                                                        dims[map], units, scores + map * units,
+                                                        scores + width + map * units);
+    for (int block = 0; block < SIDES * CHANNELS && !PyErr_Occurred(); block++) {
         int channel = block % CHANNELS, side = block / CHANNELS ^ sides[channel];
         Py_ssize_t first = maps[channel] * units;
-        float least = least_of_sums(scores + side * width + first, half_norms2 + first, sums, units);
-        scaled_excess(sums, least, slopes[channel], out + block * units, units);
+        add(scores + side * width + first, half_norms2 + first, sums, units);
+        scaled_excess(sums, least_of(sums, units), contrasts[channel], out + block * units, units);
     }
-    PyMem_Free(sums);
-    return released(b, 6);
+    PyMem_Free(scores);
+    return released(b, 15);
 }
 
 VECTORISED static void add_quantised(
@@ -222,30 +364,6 @@ static Py_ssize_t first_largest(const float *x, Py_ssize_t n)
         if (x[i] > x[largest])
             largest = i;
     return largest;
-}
-
-PyDoc_STRVAR(accumulated_doc,
-    "accumulated(activities, shares, scale, before, after, winners)\n--\n\n"
-    "Add a frame's normalised activities, quantised, to the sums before it, (2, channels * units); find its winners.");
-static PyObject *accumulated(PyObject *module, PyObject *args)
-{
-    Py_buffer b[5];
-    float scale;
-    if (!PyArg_ParseTuple(args, "y*y*fy*w*w*", &b[0], &b[1], &scale, &b[2], &b[3], &b[4]))
-        return NULL;
-    const float *activities = b[0].buf, *shares = b[1].buf;
-    const uint32_t *before = b[2].buf;
-    uint32_t *after = b[3].buf;
-    int64_t *winners = b[4].buf;
-    Py_ssize_t units = b[0].len / (Py_ssize_t)sizeof(float) / SIDES / CHANNELS;
-    for (int block = 0; block < SIDES * CHANNELS; block++) {
-        const float *activity = activities + block * units;
-        float factor = shares[block % CHANNELS] / pairwise_sum(activity, units);
-        add_quantised(activity, factor, scale, before + block * units, after + block * units, units);
-        if (block % CHANNELS == 0)
-            winners[block / CHANNELS] = first_largest(activity, units);
-    }
-    return released(b, 5);
 }
 
 /* log(d²) of the posture map's quantization error, d in metres; numbers are added up as NumPy adds 45. */
@@ -266,23 +384,11 @@ static double log_error(const double *posture, const float *unit, double smalles
     return log(error2 > smallest2 ? error2 : smallest2);
 }
 
-PyDoc_STRVAR(totals_doc,
-    "totals(before, motion, posture, mirror, signs, units, winners, limbs, smallest2, after)\n--\n\n"
-    "Write a frame's totals: displacements (um), moments of the limbs (mm), missing joints, log errors (millionths).");
-static PyObject *totals(PyObject *module, PyObject *args)
+/* Add a frame's totals: displacements (um), moments of the limbs (mm), missing joints, log errors (millionths). */
+static void add_totals(const double *motion, const double *posture, const double *image, const int32_t *limbs,
+                       const float *units, const Py_ssize_t *winners, double smallest2, int64_t *after)
 {
-    Py_buffer b[9];
-    double smallest2;
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*y*y*y*dw*", &b[0], &b[1], &b[2], &b[3], &b[4], &b[5], &b[6], &b[7],
-                          &smallest2, &b[8]))
-        return NULL;
-    const double *motion = b[1].buf, *posture = b[2].buf, *signs = b[4].buf;
-    const int32_t *mirror = b[3].buf, *limbs = b[7].buf;
-    const int64_t *winners = b[6].buf;
-    const float *units = b[5].buf;
-    int64_t *after = b[8].buf, *moments = after + PARTS, *errors = after + PARTS + LIMBS * MOMENTS + 1;
-    double image[COORDINATES];
-    memcpy(after, b[0].buf, b[8].len);
+    int64_t *moments = after + PARTS, *errors = after + PARTS + LIMBS * MOMENTS + 1;
     for (int part = 0; part < PARTS; part++)
         after[part] += (int64_t)rint(motion[part] * 1e6);
     for (int limb = 0; limb < LIMBS; limb++) {
@@ -295,27 +401,68 @@ static PyObject *totals(PyObject *module, PyObject *args)
         moments[limb * MOMENTS + MOMENTS - 2] += squares;
         moments[limb * MOMENTS + MOMENTS - 1] += 1;
     }
-    for (int i = 0; i < COORDINATES; i++)
-        image[i] = posture[mirror[i]] * signs[i];
     errors[0] += (int64_t)rint(log_error(posture, units + winners[0] * COORDINATES, smallest2) * 1e6);
     errors[1] += (int64_t)rint(log_error(image, units + winners[1] * COORDINATES, smallest2) * 1e6);
-    return released(b, 9);
+}
+
+PyDoc_STRVAR(added_doc,
+    "added(activities, shares, scale, before, after, motion, posture, mirror, signs, units, limbs, smallest2,\n"
+    "      totals_before, totals_after) -> (winner, winner in the mirror, displacement)\n--\n\n"
+    "Add a frame's normalised activities, quantised, to the sums before it, (2, channels * units), and its totals to\n"
+    "those before it; return the posture map's winners and the displacement of all parts (um).");
+static PyObject *added(PyObject *module, PyObject *args)
+{
+    Py_buffer b[12];
+    float scale;
+    double smallest2, image[COORDINATES];
+    Py_ssize_t winners[SIDES];
+    if (!PyArg_ParseTuple(args, "y*y*fy*w*y*y*y*y*y*y*dy*w*", &b[0], &b[1], &scale, &b[2], &b[3], &b[4], &b[5], &b[6],
+                          &b[7], &b[8], &b[9], &smallest2, &b[10], &b[11]))
+        return NULL;
+    const float *activities = b[0].buf, *shares = b[1].buf;
+    const uint32_t *before = b[2].buf;
+    const double *posture = b[5].buf, *signs = b[7].buf;
+    const int32_t *mirror = b[6].buf;
+    const int64_t *totals_before = b[10].buf;
+    uint32_t *after = b[3].buf;
+    int64_t *totals = b[11].buf, moved_um = 0;
+    Py_ssize_t units = b[0].len / (Py_ssize_t)sizeof(float) / SIDES / CHANNELS;
+    for (int block = 0; block < SIDES * CHANNELS; block++) {
+        const float *activity = activities + block * units;
+        float factor = shares[block % CHANNELS] / pairwise_sum(activity, units);
+        add_quantised(activity, factor, scale, before + block * units, after + block * units, units);
+        if (block % CHANNELS == 0)
+            winners[block / CHANNELS] = first_largest(activity, units);
+    }
+    for (int i = 0; i < COORDINATES; i++)
+        image[i] = posture[mirror[i]] * signs[i];
+    memcpy(totals, totals_before, b[11].len);
+    add_totals(b[4].buf, posture, image, b[9].buf, b[8].buf, winners, smallest2, totals);
+    for (int part = 0; part < PARTS; part++)
+        moved_um += totals[part] - totals_before[part];
+    for (int n = 0; n < 12; n++)
+        PyBuffer_Release(&b[n]);
+    return Py_BuildValue("nnL", winners[0], winners[1], (long long)moved_um);
 }
 
 PyDoc_STRVAR(smoothed_doc,
-    "smoothed(joints, before, speed, smooth, lagging, elapsed_s, gain, still_s, still_mps, lag_s, decay, out)\n--\n\n"
-    "Advance the kinematics of all joints: write speeds, smooth and lagging positions, velocities, (4, 15, 3).");
+    "smoothed(joints, before, state, elapsed_s, gain, still_s, still_mps, lag_s, decay, out) -> bool\n--\n\n"
+    "Advance the kinematics of all joints: write speeds, smooth and lagging positions, velocities, (4, 15, 3). False\n"
+    "where a joint is not known.");
 static PyObject *smoothed(PyObject *module, PyObject *args)
 {
-    Py_buffer b[6];
+    Py_buffer b[4];
+    int known = 1;
     double elapsed_s, gain, still_s, still_mps, lag_s, decay;
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*ddddddw*", &b[0], &b[1], &b[2], &b[3], &b[4], &elapsed_s, &gain, &still_s,
-                          &still_mps, &lag_s, &decay, &b[5]))
+    if (!PyArg_ParseTuple(args, "y*y*y*ddddddw*", &b[0], &b[1], &b[2], &elapsed_s, &gain, &still_s, &still_mps, &lag_s,
+                          &decay, &b[3]))
         return NULL;
-    const double *joints = b[0].buf, *before = b[1].buf, *speed = b[2].buf, *smooth = b[3].buf, *lagging = b[4].buf;
-    double *out = b[5].buf;
+    const double *joints = b[0].buf, *before = b[1].buf, *speed = b[2].buf, *smooth = speed + COORDINATES;
+    const double *lagging = smooth + COORDINATES;
+    double *out = b[3].buf;
     for (int joint = 0; joint < JOINTS; joint++) {
         double speed2 = 0.0;
+        known &= !isnan(joints[3 * joint]);
         for (int i = 3 * joint; i < 3 * joint + 3; i++) {
             out[i] = speed[i] + gain * ((joints[i] - before[i]) / elapsed_s - speed[i]);
             speed2 += out[i] * out[i];
@@ -328,7 +475,9 @@ static PyObject *smoothed(PyObject *module, PyObject *args)
             out[3 * COORDINATES + i] = out[COORDINATES + i] - out[2 * COORDINATES + i];
         }
     }
-    return released(b, 6);
+    for (int n = 0; n < 4; n++)
+        PyBuffer_Release(&b[n]);
+    return PyBool_FromLong(known);
 }
 
 static double length3(const double *v) { return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -377,22 +526,72 @@ static void apply(const double *transform, const double *joints, double *out)
                 + transform[4 * row + 3];
 }
 
+/* Read a message's joints, a list of fifteen lists of three numbers, NaN where one is unknown (None). Return how many
+   are unknown, -1 where an error is set. */
+static int read_joints(PyObject *joints, double *out)
+{
+    int unknown = 0;
+    if (!PyList_Check(joints) || PyList_Size(joints) != JOINTS) {
+        PyErr_SetString(PyExc_ValueError, "the joints are not a list of fifteen");
+        return -1;
+    }
+    for (int joint = 0; joint < JOINTS; joint++) {
+        PyObject *point = PyList_GetItem(joints, joint);
+        int known = point != Py_None;
+        if (known && (!PyList_Check(point) || PyList_Size(point) != 3)) {
+            PyErr_SetString(PyExc_ValueError, "a joint is not a list of three numbers");
+            return -1;
+        }
+        unknown += !known;
+        for (int i = 0; i < 3; i++)
+            *out++ = known ? PyFloat_AsDouble(PyList_GetItem(point, i)) : NAN;
+    }
+    return PyErr_Occurred() ? -1 : unknown;
+}
+
+static PyObject *listed(const double *numbers, int count)
+{
+    PyObject *list = PyList_New(count);
+    for (int i = 0; list != NULL && i < count; i++) {
+        PyObject *number = PyFloat_FromDouble(numbers[i]);
+        if (number == NULL)
+            Py_CLEAR(list);
+        else
+            PyList_SetItem(list, i, number);
+    }
+    return list;
+}
+
+static PyObject *listed_joints(const double *joints)
+{
+    PyObject *list = PyList_New(JOINTS);
+    for (int joint = 0; list != NULL && joint < JOINTS; joint++) {
+        PyObject *point = listed(joints + 3 * joint, 3);
+        if (point == NULL)
+            Py_CLEAR(list);
+        else
+            PyList_SetItem(list, joint, point);
+    }
+    return list;
+}
+
 PyDoc_STRVAR(body_doc,
     "body(joints, parents, children, lengths_m, hips_torso, reach_m, bone_m, shortest_m, out) -> bool\n--\n\n"
-    "Write the joints with standard bones, the egocentric frame, and the joints in it, measured and with standard\n"
-    "bones, (45 + 16 + 45 + 45). False where a joint or bone is not usable.");
+    "Write a message's joints as they are and with standard bones, the egocentric frame, and both in it,\n"
+    "(45 + 45 + 16 + 45 + 45). False where a joint is unknown or, as a bone, not usable.");
 static PyObject *body(PyObject *module, PyObject *args)
 {
-    Py_buffer b[6];
+    PyObject *message;
+    Py_buffer b[5];
     double reach_m, bone_m, shortest_m, ego[16];
-    if (!PyArg_ParseTuple(args, "y*y*y*y*y*dddw*", &b[0], &b[1], &b[2], &b[3], &b[4], &reach_m, &bone_m, &shortest_m,
-                          &b[5]))
+    if (!PyArg_ParseTuple(args, "Oy*y*y*y*dddw*", &message, &b[0], &b[1], &b[2], &b[3], &reach_m, &bone_m, &shortest_m,
+                          &b[4]))
         return NULL;
-    const double *joints = b[0].buf, *lengths_m = b[3].buf;
-    const int32_t *parents = b[1].buf, *children = b[2].buf, *hips_torso = b[4].buf, torso = hips_torso[2];
-    double *scaled = b[5].buf, *frame = scaled + COORDINATES, *measured_ego = frame + 16;
-    double *scaled_ego = measured_ego + COORDINATES, from_torso[COORDINATES] = {0};
-    int usable = 1;
+    const double *lengths_m = b[2].buf;
+    const int32_t *parents = b[0].buf, *children = b[1].buf, *hips_torso = b[3].buf, torso = hips_torso[2];
+    double *joints = b[4].buf, *scaled = joints + COORDINATES, *frame = scaled + COORDINATES;
+    double *measured_ego = frame + 16, *scaled_ego = measured_ego + COORDINATES, from_torso[COORDINATES] = {0};
+    int usable = read_joints(message, joints) == 0;
     for (int i = 0; i < COORDINATES; i++)
         usable &= fabs(joints[i]) <= reach_m;
     for (int bone = 0; bone < JOINTS - 1; bone++) {
@@ -412,76 +611,182 @@ static PyObject *body(PyObject *module, PyObject *args)
         apply(frame, joints, measured_ego);
         apply(ego, scaled, scaled_ego);
     }
-    for (int n = 0; n < 6; n++)
+    for (int n = 0; n < 5; n++)
         PyBuffer_Release(&b[n]);
-    return PyBool_FromLong(usable);
+    return PyErr_Occurred() ? NULL : PyBool_FromLong(usable);
 }
 
-PyDoc_STRVAR(moved_doc,
-    "moved(joints, smooth, torso, gain, parts, motion)\n--\n\n"
-    "Advance the low-passed joints relative to the torso, and write each part's mean displacement, (5,).");
-static PyObject *moved(PyObject *module, PyObject *args)
+/* Whether all numbers that are not unknown lie within the bounds, and some are known. */
+static int within(const double *numbers, int count, int unknown, double most)
 {
-    Py_buffer b[4];
+    int within_bounds = 0;
+    for (int i = 0; i < count; i++)
+        within_bounds += fabs(numbers[i]) < most;
+    return within_bounds > 0 && within_bounds == count - unknown;
+}
+
+PyDoc_STRVAR(usable_doc,
+    "usable(joints, upright, motion, torso, most_m, out) -> tuple or None\n--\n\n"
+    "Write a posture's joints, upright ones and motion, (45 + 45 + 5), and return which of the upright joints are\n"
+    "unknown; None where something is absurd, or no joint known. Without upright joints (None) they are relative to the\n"
+    "torso.");
+static PyObject *usable(PyObject *module, PyObject *args)
+{
+    PyObject *joint_list, *upright_list, *motion_list, *missing = NULL;
+    Py_buffer b;
     int torso;
-    double gain;
-    if (!PyArg_ParseTuple(args, "y*w*idy*w*", &b[0], &b[1], &torso, &gain, &b[2], &b[3]))
+    double most_m;
+    if (!PyArg_ParseTuple(args, "OOO!idw*", &joint_list, &upright_list, &PyList_Type, &motion_list, &torso, &most_m, &b))
         return NULL;
-    const double *joints = b[0].buf;
-    const int32_t *part_of = b[2].buf;
-    double *smooth = b[1].buf, *motion = b[3].buf;
-    memset(motion, 0, PARTS * sizeof *motion);
-    for (int joint = 0; joint < JOINTS; joint++) {
-        double step[3];
-        for (int i = 0; i < 3; i++) {
-            step[i] = gain * (joints[3 * joint + i] - joints[3 * torso + i] - smooth[3 * joint + i]);
-            smooth[3 * joint + i] += step[i];
-        }
-        motion[part_of[joint]] += length3(step);
-    }
-    for (int part = 0; part < PARTS; part++)
-        motion[part] /= JOINTS / PARTS;
-    return released(b, 4);
+    double *joints = b.buf, *upright = joints + COORDINATES, *motion = upright + COORDINATES;
+    int unknown = read_joints(joint_list, joints);
+    int unknown_upright = upright_list == Py_None ? unknown : read_joints(upright_list, upright);
+    for (int i = 0; upright_list == Py_None && i < COORDINATES; i++)
+        upright[i] = joints[i] - joints[3 * torso + i % 3];
+    for (int part = 0; part < PARTS && !PyErr_Occurred(); part++)
+        motion[part] = PyFloat_AsDouble(PyList_GetItem(motion_list, part));
+    int is_usable = !PyErr_Occurred() && within(joints, COORDINATES, 3 * unknown, most_m)
+        && within(upright, COORDINATES, 3 * unknown_upright, most_m) && within(motion, PARTS, 0, most_m);
+    if (is_usable)
+        missing = PyTuple_New(unknown_upright);
+    for (int joint = 0, n = 0; missing != NULL && joint < JOINTS; joint++)
+        if (isnan(upright[3 * joint]))
+            PyTuple_SetItem(missing, n++, PyLong_FromLong(joint));
+    PyBuffer_Release(&b);
+    if (is_usable || PyErr_Occurred())
+        return missing;
+    Py_RETURN_NONE;
 }
 
-PyDoc_STRVAR(left_doc,
-    "left(joints, rights, lefts, shortest_m) -> (x, z) or None\n--\n\n"
-    "Return the mean horizontal components of the unit vectors from right to left hip and shoulder; None where one is\n"
-    "too short.");
-static PyObject *left(PyObject *module, PyObject *args)
+/* Turn points by a rotation (3, 3) as BLAS multiplies: each product after the first is added without rounding it. */
+static void turned(const double *rotation, const double *points, double *out)
 {
-    Py_buffer b[3];
-    double shortest_m, sum[3] = {0};
-    int known = 1;
-    if (!PyArg_ParseTuple(args, "y*y*y*d", &b[0], &b[1], &b[2], &shortest_m))
-        return NULL;
-    const double *joints = b[0].buf;
-    const int32_t *rights = b[1].buf, *lefts = b[2].buf;
+    for (int joint = 0; joint < JOINTS; joint++, points += 3)
+        for (int row = 0; row < 3; row++)
+            *out++ = fma(points[2], rotation[3 * row + 2], fma(points[1], rotation[3 * row + 1],
+                                                                points[0] * rotation[3 * row]));
+}
+
+/* The mean direction (x, z) from right to left hip and shoulder, of those that are long enough, as
+   heading.horizontal_left. */
+static void horizontal_left(const double *joints, const int32_t *pairs, double shortest, double *left)
+{
+    double sum[3] = {0};
+    int known = 0;
     for (int pair = 0; pair < 2; pair++) {
         double across[3], unit[3];
         for (int i = 0; i < 3; i++)
-            across[i] = joints[3 * lefts[pair] + i] - joints[3 * rights[pair] + i];
-        known &= unit3(across, shortest_m, unit);
+            across[i] = joints[3 * pairs[2 + pair] + i] - joints[3 * pairs[pair] + i];
+        if (!unit3(across, shortest, unit))
+            continue;
+        known++;
         for (int i = 0; i < 3; i++)
             sum[i] += unit[i];
     }
-    for (int n = 0; n < 3; n++)
-        PyBuffer_Release(&b[n]);
-    if (!known)
-        Py_RETURN_NONE;
-    return Py_BuildValue("dd", sum[0] / 2, sum[2] / 2);
+    left[0] = known == 2 ? sum[0] / 2 : sum[0];
+    left[1] = known == 2 ? sum[2] / 2 : sum[2];
 }
 
-PyDoc_STRVAR(spreads_doc,
-    "spreads(before, after)\n--\n\n"
-    "Return each limb's spread (mm) over the frames between two sums of moments, a list.");
-static PyObject *spreads(PyObject *module, PyObject *args)
+enum { SPAN, MEAN_X, MEAN_Z, VARIANCE, LEFT_X, LEFT_Z };
+enum { FIRST_S, TURNING_S, SHORTEST_MEAN, INFLATION, FACING_VARIANCE, FULL_TURN };
+
+/* Advance the state of a HeadingFilter, (6,), by the direction to the left, as HeadingFilter does. */
+static void advance_heading(double *state, const double *left, double elapsed_s, const double *tuned)
 {
-    Py_buffer b[2];
-    double of[LIMBS];
-    if (!PyArg_ParseTuple(args, "y*y*", &b[0], &b[1]))
+    if (elapsed_s <= 0) {
+        state[SPAN] = tuned[FIRST_S];
+        state[MEAN_X] = left[0];
+        state[MEAN_Z] = left[1];
+        state[VARIANCE] = 0.0;
+    } else {
+        state[SPAN] += elapsed_s;
+        double gain = 1.0 - exp(-elapsed_s / tuned[TURNING_S]), share = elapsed_s / state[SPAN];
+        double weight = share > gain ? share : gain;
+        state[MEAN_X] += weight * (left[0] - state[MEAN_X]);
+        state[MEAN_Z] += weight * (left[1] - state[MEAN_Z]);
+        if (hypot(left[0], left[1]) >= tuned[SHORTEST_MEAN]) {
+            double error_rad
+                = remainder(atan2(left[1], left[0]) - atan2(state[MEAN_Z], state[MEAN_X]), tuned[FULL_TURN]);
+            state[VARIANCE] += gain * (error_rad * error_rad - state[VARIANCE]);
+        }
+    }
+    if (hypot(state[MEAN_X], state[MEAN_Z]) >= tuned[SHORTEST_MEAN]) {
+        double seen_rad = atan2(state[MEAN_Z], state[MEAN_X]), facing = cos(seen_rad);
+        double variance = tuned[INFLATION] * state[VARIANCE];
+        double yaw_rad
+            = seen_rad * (1.0 - (facing > 0.0 ? facing : 0.0) * variance / (variance + tuned[FACING_VARIANCE]));
+        state[LEFT_X] = cos(yaw_rad);
+        state[LEFT_Z] = sin(yaw_rad);
+    }
+}
+
+/* Advance the low-passed joints relative to the torso, and write each part's mean displacement, as PartMotionFilter. */
+static void advance_motion(double *smooth, const double *joints, int torso, double gain, const int32_t *part_of, double *motion)
+{
+    int known[PARTS] = {0};
+    memset(motion, 0, PARTS * sizeof *motion);
+    for (int joint = 0; joint < JOINTS; joint++) {
+        double step[3], length;
+        for (int i = 0; i < 3; i++) {
+            double relative = joints[3 * joint + i] - joints[3 * torso + i];
+            step[i] = gain * (relative - smooth[3 * joint + i]);
+            smooth[3 * joint + i] = isnan(step[i]) ? relative : smooth[3 * joint + i] + step[i];
+        }
+        length = length3(step);
+        if (!isnan(length)) {
+            motion[part_of[joint]] += length;
+            known[part_of[joint]]++;
+        }
+    }
+    for (int part = 0; part < PARTS; part++)
+        motion[part] /= known[part] ? known[part] : 1;
+}
+
+PyDoc_STRVAR(posture_doc,
+    "posture(body, level, heading, elapsed_s, pairs, tuned, shortest_m, smooth, gain, torso, part_of)\n"
+    "--\n\n"
+    "Advance a person's filters by what `body` wrote, and return the lists of a posture: the joints in the egocentric\n"
+    "frame, measured and with standard bones, upright ones, that frame, and the motion of each part.");
+static PyObject *posture(PyObject *module, PyObject *args)
+{
+    Py_buffer b[7];
+    double elapsed_s, shortest_m, gain;
+    int torso;
+    if (!PyArg_ParseTuple(args, "y*z*w*dy*y*dw*diy*", &b[0], &b[1], &b[2], &elapsed_s, &b[3], &b[4], &shortest_m, &b[5],
+                          &gain, &torso, &b[6]))
         return NULL;
-    const int64_t *before = b[0].buf, *after = b[1].buf;
+    const double *joints = b[0].buf, *scaled = joints + COORDINATES, *frame = scaled + COORDINATES;
+    const double *level = b[1].buf, *metric = joints;
+    double turned_metric[COORDINATES], turned_scaled[COORDINATES], upright[COORDINATES], left[2], motion[PARTS] = {0};
+    double *heading = b[2].buf, *smooth = b[5].buf;
+    if (level != NULL) {
+        turned(level, joints, turned_metric);
+        turned(level, scaled, turned_scaled);
+        metric = turned_metric;
+        scaled = turned_scaled;
+    }
+    horizontal_left(metric, b[3].buf, shortest_m, left);
+    advance_heading(heading, left, elapsed_s, b[4].buf);
+    for (int i = 0; i < COORDINATES; i++)
+        upright[i] = scaled[i] - scaled[3 * torso + i % 3];
+    const double axes[9] = {heading[LEFT_X], 0, heading[LEFT_Z], 0, -1, 0, heading[LEFT_Z], 0, -heading[LEFT_X]};
+    memcpy(turned_scaled, upright, sizeof upright);
+    turned(axes, turned_scaled, upright);
+    if (gain > 0)
+        advance_motion(smooth, joints, torso, gain, b[6].buf, motion);
+    else
+        for (int i = 0; i < COORDINATES; i++)
+            smooth[i] = joints[i] - joints[3 * torso + i % 3];
+    PyObject *lists[5] = {listed_joints(frame + 16), listed_joints(frame + 16 + COORDINATES), listed_joints(upright),
+                          listed(frame, 16), listed(motion, PARTS)};
+    for (int n = 0; n < 7; n++)
+        PyBuffer_Release(&b[n]);
+    return Py_BuildValue("NNNNN", lists[0], lists[1], lists[2], lists[3], lists[4]);
+}
+
+/* Each limb's spread (mm) over the frames between two sums of moments. */
+static void spreads_between(const int64_t *before, const int64_t *after, double *of)
+{
     for (int limb = 0; limb < LIMBS; limb++, before += MOMENTS, after += MOMENTS) {
         int64_t count = after[MOMENTS - 1] - before[MOMENTS - 1], squares = after[MOMENTS - 2] - before[MOMENTS - 2];
         double means2 = 0.0, variance;
@@ -492,9 +797,87 @@ static PyObject *spreads(PyObject *module, PyObject *args)
         variance = count ? (double)squares / (double)count - means2 / ((double)count * (double)count) : 0.0;
         of[limb] = variance > 0.0 ? sqrt(variance) : 0.0;
     }
+}
+
+PyDoc_STRVAR(spreads_doc,
+    "spreads(before, after) -> list\n--\n\n"
+    "Return each limb's spread (mm) over the frames between two sums of moments.");
+static PyObject *spreads(PyObject *module, PyObject *args)
+{
+    Py_buffer b[2];
+    double of[LIMBS];
+    if (!PyArg_ParseTuple(args, "y*y*", &b[0], &b[1]))
+        return NULL;
+    spreads_between(b[0].buf, b[1].buf, of);
     PyBuffer_Release(&b[0]);
     PyBuffer_Release(&b[1]);
     return Py_BuildValue("[dddd]", of[0], of[1], of[2], of[3]);
+}
+
+PyDoc_STRVAR(left_arm_acts_doc,
+    "left_arm_acts(before, after, first, jitter_mm, factor) -> bool\n--\n\n"
+    "Tell whether of all limbs the left arm moves most over the frames between two sums, and clearly more than the right.");
+static PyObject *left_arm_acts(PyObject *module, PyObject *args)
+{
+    enum { RIGHT_ARM, LEFT_ARM };
+    Py_buffer b[2];
+    Py_ssize_t first;
+    double jitter_mm, factor, of[LIMBS], most;
+    if (!PyArg_ParseTuple(args, "y*y*ndd", &b[0], &b[1], &first, &jitter_mm, &factor))
+        return NULL;
+    spreads_between((const int64_t *)b[0].buf + first, (const int64_t *)b[1].buf + first, of);
+    PyBuffer_Release(&b[0]);
+    PyBuffer_Release(&b[1]);
+    most = of[0];
+    for (int limb = 1; limb < LIMBS; limb++)
+        most = of[limb] > most ? of[limb] : most;
+    return PyBool_FromLong(most == of[LEFT_ARM] && most + jitter_mm > factor * (of[RIGHT_ARM] + jitter_mm));
+}
+
+VECTORISED static void excess_over_contrast(const float *scores, float least, float contrast, float *out, Py_ssize_t units)
+{
+    for (Py_ssize_t u = 0; u < units; u++)
+        out[u] = (scores[u] - least) * 2 / -contrast;
+}
+
+PyDoc_STRVAR(contrasted_doc,
+    "contrasted(scores, contrast, out)\n--\n\n"
+    "Write the exponents of a map's activity from its scores, of which there are as many as units, or more at the end.");
+static PyObject *contrasted(PyObject *module, PyObject *args)
+{
+    Py_buffer b[2];
+    float contrast;
+    if (!PyArg_ParseTuple(args, "y*fw*", &b[0], &contrast, &b[1]))
+        return NULL;
+    const float *scores = b[0].buf;
+    Py_ssize_t units = b[1].len / (Py_ssize_t)sizeof(float);
+    if (b[0].len < b[1].len)
+        PyErr_SetString(PyExc_ValueError, "there are fewer scores than units");
+    else
+        excess_over_contrast(scores, least_of(scores, units), contrast, b[1].buf, units);
+    return released(b, 2);
+}
+
+VECTORISED static void scale_and_centre(float *activities, float length, const float *mean, Py_ssize_t units)
+{
+    for (Py_ssize_t u = 0; u < units; u++)
+        activities[u] = activities[u] / length - mean[u];
+}
+
+PyDoc_STRVAR(centred_doc,
+    "centred(activities, square, mean)\n--\n\n"
+    "Scale a map's activities, whose squares add up to `square`, to unit length, and subtract their mean, in place.");
+static PyObject *centred(PyObject *module, PyObject *args)
+{
+    Py_buffer b[2];
+    float square;
+    if (!PyArg_ParseTuple(args, "w*fy*", &b[0], &square, &b[1]))
+        return NULL;
+    if (b[0].len != b[1].len)
+        PyErr_SetString(PyExc_ValueError, "the mean is not that of as many units");
+    else
+        scale_and_centre(b[0].buf, sqrtf(square), b[1].buf, b[0].len / (Py_ssize_t)sizeof(float));
+    return released(b, 2);
 }
 
 VECTORISED static void add_row(const float *activity, float scale, const uint32_t *before, uint32_t *after, Py_ssize_t n)
@@ -679,19 +1062,21 @@ static PyObject *exceeding(PyObject *module, PyObject *args)
 }
 
 static PyMethodDef methods[] = {
-    {"accumulated", accumulated, METH_VARARGS, accumulated_doc},
+    {"added", added, METH_VARARGS, added_doc},
     {"body", body, METH_VARARGS, body_doc},
+    {"centred", centred, METH_VARARGS, centred_doc},
+    {"contrasted", contrasted, METH_VARARGS, contrasted_doc},
     {"decoded", decoded, METH_VARARGS, decoded_doc},
     {"exceeding", exceeding, METH_VARARGS, exceeding_doc},
     {"exponents", exponents, METH_VARARGS, exponents_doc},
-    {"left", left, METH_VARARGS, left_doc},
-    {"map_inputs", map_inputs, METH_VARARGS, map_inputs_doc},
-    {"moved", moved, METH_VARARGS, moved_doc},
+    {"left_arm_acts", left_arm_acts, METH_VARARGS, left_arm_acts_doc},
     {"pooled", pooled, METH_VARARGS, pooled_doc},
+    {"pooled_windows", pooled_windows, METH_VARARGS, pooled_windows_doc},
+    {"posture", posture, METH_VARARGS, posture_doc},
     {"running_sums", running_sums, METH_VARARGS, running_sums_doc},
     {"smoothed", smoothed, METH_VARARGS, smoothed_doc},
     {"spreads", spreads, METH_VARARGS, spreads_doc},
-    {"totals", totals, METH_VARARGS, totals_doc},
+    {"usable", usable, METH_VARARGS, usable_doc},
     {NULL, NULL, 0, NULL},
 };
 static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "actum._compiled", NULL, 0, methods, NULL, NULL, NULL, NULL};

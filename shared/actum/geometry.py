@@ -17,10 +17,9 @@ SMALLEST_M = 1e-3
 ROUNDING = float(np.finfo(np.float64).eps)
 """Part of a unit vector that may be nothing but rounding, and then has no defined direction either."""
 
-_NEXT = [1, 2, 0]
-"""For each axis the next one in cyclic order, as the cross product takes them."""
-_PREVIOUS = [2, 0, 1]
-"""For each axis the previous one in cyclic order."""
+Numbers = list[float]
+_TRUNK = [INDEX[name] for name in ("right_hip", "left_hip", "torso", "right_shoulder", "left_shoulder", "neck")]
+"""The joints on which the egocentric frame depends."""
 RIGID_TOLERANCE = 1e-3
 """How far R Rᵀ of a rotation may be from the identity, per element: transforms are written with few decimals."""
 
@@ -111,20 +110,39 @@ def ego_from_camera(joints: Array) -> Array:
     Raises:
         DegenerateError: the hips, or the shoulders in their place, coincide, or the torso lies on their line.
     """
-    right_hip, left_hip, torso = (joints[..., INDEX[name], :] for name in ("right_hip", "left_hip", "torso"))
-    unknown = np.isnan(right_hip + left_hip)
-    if unknown.any():
-        right, left = _hips_from_shoulders(joints)
-        right_hip, left_hip = np.where(unknown, right, right_hip), np.where(unknown, left, left_hip)
-    left = _unit(left_hip - right_hip, "both hips, or both shoulders in place of missing hips, lie at one point")
-    origin = right_hip + ((torso - right_hip) * left).sum(axis=-1, keepdims=True) * left
-    up = _unit(torso - origin, "the torso lies on the line through both hips")
+    bodies = joints[..., _TRUNK, :].reshape(-1, len(_TRUNK), 3).tolist()
+    rows = np.array([_axes_and_origin(*body) for body in bodies]).reshape(*joints.shape[:-2], 4, 3)
     ego = np.zeros((*joints.shape[:-2], 4, 4))
-    forward = left[..., _NEXT] * up[..., _PREVIOUS] - left[..., _PREVIOUS] * up[..., _NEXT]
-    ego[..., 0, :3], ego[..., 1, :3], ego[..., 2, :3] = left, up, forward
-    ego[..., :3, 3] = -(ego[..., :3, :3] @ origin[..., None])[..., 0]
+    ego[..., :3, :3] = axes = rows[..., :3, :]
+    ego[..., :3, 3] = -(axes @ rows[..., 3, :, None])[..., 0]
     ego[..., 3, 3] = 1.0
     return ego
+
+
+def _axes_and_origin(
+    right_hip: Numbers,
+    left_hip: Numbers,
+    torso: Numbers,
+    right_shoulder: Numbers,
+    left_shoulder: Numbers,
+    neck: Numbers,
+) -> list[Numbers]:
+    """Return one body's axes and their origin.
+
+    With plain numbers: an array of three costs more than what is done with it.
+    """
+    if math.isnan(right_hip[0] + left_hip[0]):
+        right_hip, left_hip = _hips_from_shoulders(right_shoulder, left_shoulder, neck, torso)
+    left = _unit(
+        [end - start for end, start in zip(left_hip, right_hip, strict=True)],
+        "both hips, or both shoulders in place of missing hips, lie at one point",
+    )
+    terms = [(t - r) * x for t, r, x in zip(torso, right_hip, left, strict=True)]
+    along = terms[0] + terms[1] + terms[2]
+    origin = [r + along * x for r, x in zip(right_hip, left, strict=True)]
+    up = _unit([t - o for t, o in zip(torso, origin, strict=True)], "the torso lies on the line through both hips")
+    (x, y, z), (u, v, w) = left, up
+    return [left, up, [y * w - z * v, z * u - x * w, x * v - y * u], origin]
 
 
 def upright(joints: Array, left_x: float, left_z: float) -> Array:
@@ -162,21 +180,20 @@ def _unit_of_any_length(vector: Sequence[float]) -> Array:
     return np.array(near_1) / math.hypot(*near_1)
 
 
-def _hips_from_shoulders(joints: Array) -> tuple[Array, Array]:
-    """Return replacements of the right and the left hip, (…, 3) each, from shoulders, neck and torso.
+def _hips_from_shoulders(right: Numbers, left: Numbers, neck: Numbers, torso: Numbers) -> tuple[Numbers, Numbers]:
+    """Return replacements of the right and the left hip, from shoulders, neck and torso.
 
     The shoulders are moved along the trunk, as far below the torso as the neck is above it: 0.24 m for standard
     bones, where the hips are. Of the line between them only the direction matters.
     """
-    names = ("right_shoulder", "left_shoulder", "neck", "torso")
-    right, left, neck, torso = (joints[..., INDEX[name], :] for name in names)
-    middle, half = 2 * torso - neck, (left - right) / 2
-    return middle - half, middle + half
+    middle = [2 * t - n for t, n in zip(torso, neck, strict=True)]
+    half = [(end - start) / 2 for end, start in zip(left, right, strict=True)]
+    return [m - h for m, h in zip(middle, half, strict=True)], [m + h for m, h in zip(middle, half, strict=True)]
 
 
-def _unit(vectors: Array, problem: str) -> Array:
-    """Return vectors (…, 3) at unit length; `problem` is the error's text where one is too short."""
-    lengths: Array = np.sqrt((vectors * vectors).sum(axis=-1, keepdims=True))
-    if lengths.min() < SMALLEST_M:
+def _unit(vector: Numbers, problem: str) -> Numbers:
+    """Return a vector at unit length; `problem` is the error's text where it is too short."""
+    length = math.sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2])
+    if length < SMALLEST_M:
         raise DegenerateError(problem)
-    return vectors / lengths
+    return [component / length for component in vector]

@@ -91,10 +91,10 @@ TOPICS: tuple[Topic, ...] = (
 )
 _BY_PREFIX = {topic.leaf.removesuffix("/{}"): topic for topic in TOPICS}
 """Topics by their leaf without `/{}`, such as `posture`."""
-_BY_SCHEMA = {topic.message.SCHEMA: topic for topic in TOPICS if topic.message is not m.Image}
-"""Topics by their messages' schema; images have two."""
 _NAMED_BY = {POSTURE: "agent", ACTION: "agent", HELD_BACK: "agent", EVENT: "agent", STATUS: "service", INFO: "service"}
 """The field that gives the last chunk of the key, for the topics whose keys have one."""
+_PLACES = {topic.message.SCHEMA: (topic, _NAMED_BY.get(topic)) for topic in TOPICS if topic is not DEPTH}
+"""Topics, and that field, by their messages' schema; for images the topic of colour."""
 
 
 @dataclass(frozen=True)
@@ -211,14 +211,18 @@ def parse(text: str) -> Address:
 
 def address_of(message: m.Message) -> Address:
     """Return the parsed form of the key that a message is put on."""
-    if isinstance(message, m.Image):
-        return Address(DEPTH if message.format == "depth16_mm" else COLOR, message.sensor, None)
-    topic = _BY_SCHEMA[message.SCHEMA]
-    named_by = _NAMED_BY.get(topic)
-    return Address(topic, message.sensor, None if named_by is None else str(getattr(message, named_by)))
+    topic, name = _topic_and_name(message)
+    return Address(topic, message.sensor, None if name is None else str(name))
 
 
 def key_of(message: m.Message) -> str:
     """Build the key a message is put on."""
-    address = address_of(message)
-    return key(address.topic, address.sensor, address.name)
+    topic, name = _topic_and_name(message)
+    return key(topic, message.sensor, name)
+
+
+def _topic_and_name(message: m.Message) -> tuple[Topic, str | int | None]:
+    topic, named_by = _PLACES[message.SCHEMA]
+    if topic is COLOR:
+        topic = DEPTH if isinstance(message, m.Image) and message.format == "depth16_mm" else COLOR
+    return topic, None if named_by is None else getattr(message, named_by)

@@ -3,7 +3,6 @@
 from bisect import bisect_left, bisect_right
 from collections import deque
 from collections.abc import Iterable, Iterator
-from itertools import islice
 from operator import attrgetter
 from typing import Generic, Protocol, TypeVar
 
@@ -39,7 +38,7 @@ class StreamBuffer(Generic[S]):
 
     def __init__(self, memory_ns: int) -> None:
         self._memory_ns = memory_ns
-        self._samples: deque[S] = deque()
+        self._samples: list[S] = []
         self._answered: deque[range] = deque(maxlen=MOST_ANSWERED)
 
     def __len__(self) -> int:
@@ -56,12 +55,13 @@ class StreamBuffer(Generic[S]):
     def append(self, sample: S) -> None:
         """Add the next sample, and forget the samples that are too old."""
         self._samples.append(sample)
-        while self._samples[0].stamp_ns < sample.stamp_ns - self._memory_ns:
-            self._samples.popleft()
+        oldest_ns = sample.stamp_ns - self._memory_ns
+        if self._samples[0].stamp_ns < oldest_ns:
+            del self._samples[: bisect_left(self._samples, oldest_ns, key=_stamp_ns)]
 
     def let_go(self) -> None:
         """Forget the oldest sample."""
-        self._samples.popleft()
+        del self._samples[0]
 
     def clear(self) -> None:
         """Forget everything, after a restart of the stream."""
@@ -71,10 +71,9 @@ class StreamBuffer(Generic[S]):
     def between(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples with start <= stamp <= end, in order."""
         first = bisect_left(self._samples, start_ns, key=_stamp_ns)
-        after = bisect_right(self._samples, end_ns, lo=first, key=_stamp_ns)
-        # from its newer end, where most segments lie: a deque has to be walked through
-        newest_first = islice(reversed(self._samples), len(self._samples) - after, len(self._samples) - first)
-        return list(newest_first)[::-1]
+        if end_ns >= self.newest_ns:
+            return self._samples[first:]
+        return self._samples[first : bisect_right(self._samples, end_ns, lo=first, key=_stamp_ns)]
 
     def mark_answered(self, start_ns: int, end_ns: int) -> None:
         """Remember that a segment has been answered, so that its later samples are too late."""

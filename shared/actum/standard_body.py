@@ -50,6 +50,12 @@ _PATHS = _paths_from_torso()
 """Which bones lie on the path from the torso to each joint: (15, 14), 1 or 0."""
 
 
+def bones_of(joints: Array) -> tuple[Array, Array]:
+    """Return the bones of joints (15, 3) as vectors (14, 3), and their squared lengths (14,); NaN where unknown."""
+    bones = joints[_CHILDREN] - joints[_PARENTS]
+    return bones, np.einsum("ij,ij->i", bones, bones)
+
+
 def scaled(joints: Array) -> Array:
     """Return the joints, (15, 3), with each bone at its standard length in its own direction, the torso unmoved.
 
@@ -61,8 +67,8 @@ def scaled(joints: Array) -> Array:
     Raises:
         DegenerateError: a bone has no length, so that its direction is undefined.
     """
-    bones = joints[_CHILDREN] - joints[_PARENTS]
-    lengths = np.sqrt(np.einsum("ij,ij->i", bones, bones))
+    bones, lengths2 = bones_of(joints)
+    lengths = np.sqrt(lengths2)
     if np.fmin.reduce(lengths) < SMALLEST_M:
         raise DegenerateError("two joints that a bone connects are at the same position")
     standard = bones * (_LENGTHS_M / lengths)[:, None]

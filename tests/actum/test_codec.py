@@ -25,6 +25,21 @@ def test_the_payload_is_a_plain_map_that_stock_msgpack_reads() -> None:
     assert plain["sensor"] == "kinect0"
 
 
+def test_what_is_packed_is_what_the_models_dump_is() -> None:
+    """The parts of a message, too, however deep; a message that cannot be packed leaves nothing for the next one."""
+    frame = skeleton(1, STANDING, STANDING)
+    action = Action.model_construct(sensor="kinect0", agent=1, stamp_ns=1, seq=None, maps={"postures": object()})
+    for _ in range(2):
+        with pytest.raises(TypeError, match="object"):
+            codec.encode(action)
+        assert codec.encode(frame, seq=7).payload == msgpack.packb(frame.model_dump() | {"seq": 7})
+
+
+def test_a_field_that_is_left_out_of_an_unchecked_message_is_found_when_it_is_packed() -> None:
+    with pytest.raises(TypeError):
+        codec.encode(Segment.of_checked(sensor="kinect0", kind="start"))
+
+
 def test_a_mark_needs_only_kind_and_segment_id() -> None:
     mark = codec.decode("actum/kinect0/segment", msgpack.packb({"kind": "start", "segment_id": "a"}))
     assert mark == Segment(sensor="kinect0", kind="start", segment_id="a")

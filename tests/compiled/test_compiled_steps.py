@@ -1,5 +1,6 @@
 """The compiled steps do what the NumPy code beside them does: installations with and without a compiler agree."""
 
+import math
 from collections.abc import Callable
 from typing import TypeVar
 
@@ -9,16 +10,19 @@ from benchmarks.rig.numpy_alone import numpy_alone
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from actum.arrays import joints_to_array
 from actum.core import steps
 from actum.geometry import DegenerateError
-from actum.messages import Posture
+from actum.messages import Joint, Posture
 from actum.node import SECOND_NS
+from actum.skeletons import INDEX
 from people import FRAME_NS, STANDING, skeleton
-from pose_preprocessor.body import body_of, body_of_known
+from pose_preprocessor.body import body_of, known_body
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from som_classifier.convolutions import COORDINATES, FILTERS, INSTANTS, Convolutions
 from som_classifier.frames import Frame, frame_of
+from som_classifier.handedness import left_arm_acts, limb_moments
 from som_classifier.kinematics import KinematicsFilter
 from som_classifier.pyramid import PrefixSums, Pyramid, running_sums
 from som_classifier.spotting.decoding import Decoder, Spans, decoded
@@ -37,13 +41,26 @@ def both(work: Callable[[], R]) -> tuple[R, R]:
         return compiled, work()
 
 
-def moving(seed: int, frames: int = 40) -> list[Posture]:
-    """Postures of a person all of whose joints move smoothly, at uneven intervals."""
+def moving(seed: int, frames: int = 40, lacking: float = 0.0, up: list[float] | None = None) -> list[Posture]:
+    """Postures of a person all of whose joints move smoothly, at uneven intervals, with pauses.
+
+    Args:
+        seed: of all that is random.
+        frames: how many there are.
+        lacking: the share of the frames that lack a hand.
+        up: against gravity, in the camera frame.
+    """
     rng, node = np.random.default_rng(seed), PosePreprocessor(PoseSettings.defaults())
     far_m, phases = rng.uniform(0.0, 0.1, (15, 3)), rng.uniform(0.0, 6.0, (15, 3))
-    stamps_ns = np.cumsum(rng.integers(FRAME_NS // 2, 2 * FRAME_NS, frames))
+    pauses = rng.random(frames) < 0.05
+    stamps_ns = np.cumsum(rng.integers(FRAME_NS // 2, 2 * FRAME_NS, frames) + SECOND_NS * pauses)
     joints_m = [STANDING + far_m * np.sin(3e-9 * stamp_ns + phases) for stamp_ns in stamps_ns]
-    skeletons = [skeleton(int(ns), each, seq=n) for n, (ns, each) in enumerate(zip(stamps_ns, joints_m, strict=True))]
+    for each in joints_m:
+        each[INDEX["left_hand"]] = np.nan if rng.random() < lacking else each[INDEX["left_hand"]]
+    skeletons = [
+        skeleton(int(ns), each, seq=n).model_copy(update={"up_in_camera": up})
+        for n, (ns, each) in enumerate(zip(stamps_ns, joints_m, strict=True))
+    ]
     return [posture for each in skeletons for posture in node.handle(each) if isinstance(posture, Posture)]
 
 
@@ -57,12 +74,50 @@ def encoded(postures: list[Posture]) -> list[Frame]:
 
 
 @settings(deadline=None, max_examples=10)
-@given(st.integers(0, 2**32 - 1))
-def test_postures_agree(seed: int) -> None:
-    for compiled, plain in zip(*both(lambda: moving(seed)), strict=True):
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.3]), st.sampled_from([None, [0.1, -0.9, 0.25]]))
+def test_postures_agree(seed: int, lacking: float, up: list[float] | None) -> None:
+    for compiled, plain in zip(*both(lambda: moving(seed, lacking=lacking, up=up)), strict=True):
         assert compiled.valid and plain.valid
-        for name in ("joints_m", "joints", "upright", "ego_from_camera", "motion"):
+        for name in ("joints_m", "joints", "upright"):
+            of_both = (joints_to_array(getattr(each, name)) for each in (compiled, plain))
+            np.testing.assert_allclose(*of_both, rtol=0, atol=ROUNDING_M)
+        for name in ("ego_from_camera", "motion"):
             np.testing.assert_allclose(getattr(compiled, name), getattr(plain, name), rtol=0, atol=ROUNDING_M)
+
+
+NUMBERS = st.sampled_from([0.0, -0.5, 0.3, 1e-300, 99.0, 101.0, -1e300, math.inf, math.nan])
+
+
+@pytest.mark.filterwarnings("ignore:invalid value")
+@given(
+    st.lists(st.none() | st.lists(NUMBERS, min_size=3, max_size=3), min_size=15, max_size=15),
+    st.none() | st.lists(st.none() | st.lists(st.just(0.1), min_size=3, max_size=3), min_size=15, max_size=15),
+    st.sampled_from([0.01, 1e9]),
+)
+def test_the_same_postures_are_usable(joints: list[Joint], upright: list[Joint] | None, moved_m: float) -> None:
+    posture = moving(0, 1)[0].model_copy(update={"joints": joints, "upright": upright, "motion": [moved_m] * 5})
+    compiled, plain = both(lambda: frame_of(posture, 0, KinematicsFilter()))
+    assert (compiled.valid, compiled.missing) == (plain.valid, plain.missing)
+    if compiled.kinematics is not None and plain.kinematics is not None:
+        np.testing.assert_array_equal(compiled.joints, plain.joints)
+        np.testing.assert_array_equal(compiled.motion, plain.motion)
+        np.testing.assert_array_equal(compiled.kinematics.posture, plain.kinematics.posture)
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 50]))
+def test_the_same_arm_acts(seed: int, frames: int) -> None:
+    postures = np.random.default_rng(seed).normal(0, 0.1, (frames, 15, 3)) * np.linspace(0.1, 4.0, 15)[:, None]
+    after = np.concatenate([[7, 7], limb_moments(postures).sum(axis=0).ravel()])
+    for first in (after, np.concatenate([after[:2], after[2:].reshape(4, 8)[[1, 0, 3, 2]].ravel()])):
+        compiled, plain = both(lambda now=first: left_arm_acts(np.zeros_like(now), now, 2))
+        assert compiled == plain
+
+
+@given(st.lists(st.floats(-2, 3, width=32), min_size=5, max_size=5))
+def test_the_action_map_answers_alike(scores: list[float]) -> None:
+    model = spotting_model()
+    inputs = np.resize(np.array(scores, np.float32), len(model.labels))
+    np.testing.assert_allclose(*both(lambda: model.action_map.activity(inputs)), rtol=1e-5, atol=1e-7)
 
 
 @settings(deadline=None, max_examples=10)
@@ -154,6 +209,6 @@ def test_what_cannot_be_used_is_refused_alike(spoilt: str) -> None:
 def test_joints_that_coincide_are_refused_by_both() -> None:
     joints = STANDING.copy()
     joints[1] = joints[2]
-    assert body_of_known(joints, 10.0, 2.0) is None
+    assert known_body(joints.tolist(), 10.0, 2.0) is None
     with pytest.raises(DegenerateError):
         body_of(joints)

@@ -6,7 +6,7 @@ import re
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from actum import keys, messages
+from actum import codec, keys, messages
 from actum.messages import HeldBack, Info, Message, Status, Training, Truth
 from actum.node import SECOND_NS, TICK_NS, Tick
 from node_cases import CASES, Case, every_node_finding_too
@@ -37,6 +37,17 @@ def test_it_puts_on_its_own_keys(case: Case) -> None:
     outputs = Wire(case.build()).send(*case.messages())
     assert bool(outputs) == bool(case.puts)
     assert all(re.fullmatch(case.puts, keys.key_of(output)) for output in outputs)
+
+
+@every_node_finding_too
+def test_what_it_puts_unchecked_would_pass_the_check(case: Case) -> None:
+    """A step may build its messages without checks: they are those that the classes make, fields in the same order."""
+    node = case.build()
+    outputs = [output for message in case.messages() for output in node.handle(message)]
+    for output in outputs:
+        checked = type(output).model_validate(output.model_dump())
+        assert (checked, list(vars(checked))) == (output, list(vars(output)))
+        assert codec.encode(checked, seq=1) == codec.encode(output, seq=1)
 
 
 @every_node_finding_too

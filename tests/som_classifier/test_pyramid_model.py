@@ -121,10 +121,10 @@ def test_the_running_sums_may_wrap_around() -> None:
 
 def begun_at(activity: FrameActivity, begun: int) -> FrameActivity:
     before, after = (
-        replace(instant, sums=[own + np.uint32(begun) for own in instant.sums])
+        instant._replace(sums=[own + np.uint32(begun) for own in instant.sums])
         for instant in (activity.before, activity.after)
     )
-    return replace(activity, before=before, after=after)
+    return activity._replace(before=before, after=after)
 
 
 @each_sample

@@ -1,7 +1,8 @@
 """The types of fields, and the header that every message has."""
 
 import math
-from typing import Annotated, ClassVar, Literal
+from functools import cache
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat
 
@@ -65,6 +66,25 @@ class Message(BaseModel):
     """Whether the content can be used; if not, `reason` says why."""
     reason: Reason | None = None
     """Why the message is not valid; null where it is."""
+
+    @classmethod
+    def of_checked(cls, **fields: Any) -> Self:
+        """Build a message of a step's own results without checking them again: they are of the fields' types already.
+
+        It is the message that the class makes of the same fields; lists become its own.
+        """
+        message = cls.__new__(cls)
+        object.__setattr__(message, "__dict__", {**_defaults(cls), **fields})
+        object.__setattr__(message, "__pydantic_fields_set__", set(fields))
+        object.__setattr__(message, "__pydantic_extra__", None)
+        object.__setattr__(message, "__pydantic_private__", None)
+        return message
+
+
+@cache
+def _defaults(kind: type[Message]) -> dict[str, Any]:
+    """Return a message's fields in order, with their default values."""
+    return {name: field.get_default(call_default_factory=True) for name, field in kind.model_fields.items()}
 
 
 class Model(BaseModel):
