@@ -15,8 +15,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from statistics import median
 
+from hatch_build import LIBRARY, SOURCE, compiled
 from rich.console import Console
 from rich.table import Table
+
+from actum import core
 
 ROOT = Path(__file__).parents[2]
 SLOWER = 0.9
@@ -31,6 +34,7 @@ def main(commit: str, rounds: int) -> bool:
         other = Path(name) / "tree"
         subprocess.run(["git", "worktree", "add", "--quiet", "--detach", other, commit], cwd=ROOT, check=True)
         try:
+            compile_steps(other)
             turns = [(measured(ROOT), measured(other)) for _ in range(rounds)]
         finally:
             subprocess.run(["git", "worktree", "remove", "--force", other], cwd=ROOT, check=True)
@@ -40,6 +44,13 @@ def main(commit: str, rounds: int) -> bool:
     slower = [what for what, ratio in ratios.items() if ratio < SLOWER]
     console.print(f"slower by a tenth or more: {'; '.join(slower) if slower else 'nothing'}")
     return not slower
+
+
+def compile_steps(tree: Path) -> None:
+    """Compile the steps of another commit as this installation has them compiled; an older commit has none."""
+    if core.steps is not None and (tree / SOURCE).exists():
+        problem = compiled(tree / SOURCE, tree / LIBRARY)
+        assert problem is None, problem
 
 
 def measured(tree: Path) -> Rates:
