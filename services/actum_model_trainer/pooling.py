@@ -46,7 +46,11 @@ class Pooling:
         self._pyramid = pyramid
 
     def vectors(
-        self, samples: Sequence[SegmentSample], variants: Sequence[Sequence[Variant]], stages: Sequence[Sequence[float]]
+        self,
+        samples: Sequence[SegmentSample],
+        variants: Sequence[Sequence[Variant]],
+        stages: Sequence[Sequence[float]],
+        beside: int = 0,
     ) -> list[PooledVectors]:
         """Return the vectors of each stage, evenly thinned out to about `MAX_VECTORS`.
 
@@ -54,6 +58,7 @@ class Pooling:
             samples: of the training.
             variants: those of each sample.
             stages: the shares of an action (0 to 1) that belong to each stage.
+            beside: how many samples were pooled before, which count in the thinning out.
         """
         rows: list[list[Floats]] = [[] for _ in stages]
         of_row: list[list[tuple[int, int]]] = [[] for _ in stages]
@@ -61,7 +66,7 @@ class Pooling:
             sums = _VariantSums(self, sample, of_sample)
             for stage, fractions in enumerate(stages):
                 pairs = list(product(fractions, range(len(of_sample))))
-                step = min(-(-len(samples) * len(pairs) // MAX_VECTORS), len(pairs))
+                step = min(-(-(beside + len(samples)) * len(pairs) // MAX_VECTORS), len(pairs))
                 for fraction, variant in pairs[index % step :: step]:
                     rows[stage].append(self._pyramid.vector(sums.until(variant, fraction)))
                     of_row[stage].append((index, variant))

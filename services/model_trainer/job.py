@@ -28,7 +28,7 @@ from actum_model_trainer.samples import samples_from, select
 from actum_model_trainer.training import TrainingError, train_to_spot, update
 from model_trainer.set_evaluation import evaluate_set
 from som_classifier.model import Model
-from som_classifier.model_loading import ModelError, load_model
+from som_classifier.model_loading import ModelError, kept_in, load_model
 from som_classifier.presets import PRESETS
 
 PRINT_S = 0.1
@@ -84,7 +84,8 @@ def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
         model = train_to_spot(*learnt, PRESETS[arguments.preset], arguments.seed, progress)
     else:
         preset = PRESETS.get(before.metadata.preset, PRESETS[arguments.preset])
-        model = update(before, *learnt, preset, arguments.seed, progress)
+        assert arguments.model is not None
+        model = update(before, *learnt, preset, arguments.seed, progress, kept_in(arguments.model))
     model.save(arguments.folder / MODEL)
     answers = model.metadata.held_out_answers
     right = sum(done == answered for done, answered in answers)
