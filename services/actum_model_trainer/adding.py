@@ -15,6 +15,7 @@ from actum_model_trainer.augmentation import augmentation_for, variants
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.kept import KeptWindows, kept_arrays, kept_data, pooled_basis
 from actum_model_trainer.layers_above import fitted_model, postures_of
+from actum_model_trainer.left_out_by_coordinates import with_what_was_left_out
 from actum_model_trainer.pooling import PooledVectors, Pooling
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import TrainingError
@@ -67,7 +68,7 @@ def add(
     data = _joined(before, _Measured.of(model, before.measures, samples, as_known, rng))
     origin = _origin(known, data) | {"data_digest": digest, "updated_from": model.id}
     above = fitted_model(model.first, data, origin, as_known, rng, progress)
-    added = replace(above, kept=kept_arrays(data))
+    added = replace(with_what_was_left_out(above, model, before, as_known), kept=kept_arrays(data))
     if known.spotting is None or windows is None:
         return added
     moved = windows.moved(pooled_basis(kept), pooled_basis(added.kept))

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 Floats32 = NDArray[np.float32]
 
-MOST_LANDMARKS = 512
-"""Vectors that directions are found from: twice as many as directions, and their decomposition costs a tenth of a
-second."""
+LANDMARKS = 2
+"""Vectors that each direction is found from: more show the directions hardly better, and n vectors cost n³."""
 SMALLEST_SHARE = 1e-6
 """Share of the landmarks' largest variance below which a direction is rounding error."""
 
@@ -39,15 +38,19 @@ class Basis:
     @classmethod
     def of(cls, vectors: Floats32, rank: int) -> "Basis":
         """Find the principal directions of vectors (n, inputs), at most `rank`."""
-        landmarks = _spread(vectors)
+        landmarks = _spread(vectors, rank)
         mean = landmarks.mean(axis=0, dtype=np.float64).astype(np.float32)
         return cls(mean, _principal(landmarks - mean, rank))
 
     def extended(self, vectors: Floats32, most: int) -> "Basis":
         """Append the principal directions of what vectors (n, inputs) have beside these, at most so many."""
-        centred = _spread(vectors) - self.mean
+        centred = _spread(vectors, most) - self.mean
         beside = centred - (centred @ self.directions) @ self.directions.T
         return Basis(self.mean, np.hstack([self.directions, _principal(beside, most)]))
+
+    def first(self, rank: int) -> "Basis":
+        """Return the first directions alone."""
+        return Basis(self.mean, self.directions[:, :rank])
 
     def coordinates(self, vectors: Floats32) -> Floats32:
         """Return the coordinates (n, rank) of vectors (n, inputs)."""
@@ -67,9 +70,9 @@ class Basis:
         return (of_coordinates - self.mean @ axes).astype(np.float32)
 
 
-def _spread(vectors: Floats32) -> Floats32:
-    """Return at most `MOST_LANDMARKS` of the vectors, spread evenly."""
-    return vectors[np.linspace(0, len(vectors) - 1, min(len(vectors), MOST_LANDMARKS)).round().astype(np.intp)]
+def _spread(vectors: Floats32, rank: int) -> Floats32:
+    """Return some of the vectors, spread evenly, to find so many directions from."""
+    return vectors[np.linspace(0, len(vectors) - 1, min(len(vectors), LANDMARKS * rank)).round().astype(np.intp)]
 
 
 def _principal(centred: NDArray[np.floating[Any]], most: int) -> Floats32:

@@ -22,6 +22,8 @@ from som_classifier.model import KEPT, Arrays
 
 RANK = 256
 """Directions that are kept: 96 % of the variance of pooled vectors lies in them, and the penalty shrinks the others."""
+MOST_RANK = 2 * RANK
+"""Most directions that are kept after additions, each of which appends some, or of a training on many samples."""
 COARSE = np.float16
 """The precision of what is kept: its rounding is small beside the noise of a sensor."""
 
@@ -142,13 +144,13 @@ def pooled_basis(arrays: Arrays) -> Basis:
 
 
 def _coarse(coordinates: NDArray[np.float32]) -> NDArray[np.float16]:
-    """Round coordinates; those of outliers that are too large become the largest that there are."""
+    """Round `MOST_RANK` coordinates; those of outliers that are too large become the largest that there are."""
     largest = float(np.finfo(COARSE).max)
-    return np.clip(coordinates, -largest, largest).astype(COARSE)
+    return np.clip(coordinates[:, :MOST_RANK], -largest, largest).astype(COARSE)
 
 
 def _basis_arrays(name: str, basis: Basis) -> Arrays:
-    return {f"{name}_mean": basis.mean, f"{name}_directions": basis.directions.astype(COARSE)}
+    return {f"{name}_mean": basis.mean, f"{name}_directions": basis.first(MOST_RANK).directions.astype(COARSE)}
 
 
 def _restored_basis(name: str, kept: Mapping[str, NDArray[Any]]) -> Basis:

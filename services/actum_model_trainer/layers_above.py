@@ -9,11 +9,12 @@ import numpy as np
 from actum.arrays import Array, Floats
 from actum_model_trainer.augmentation import Variant, augmentation_for, variants
 from actum_model_trainer.background import negatives_of
+from actum_model_trainer.basis import Basis
 from actum_model_trainer.confidence import body_movement, inverse_temperatures
 from actum_model_trainer.convolution_training import Convolved, blended
 from actum_model_trainer.discriminants import FittedStage, fit_discriminants
 from actum_model_trainer.kept import kept_arrays
-from actum_model_trainer.pooling import PooledVectors, Pooling
+from actum_model_trainer.pooling import MAX_VECTORS, PooledVectors, Pooling
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, provenance
 from actum_model_trainer.samples import LabelledStream, SegmentSample
@@ -32,6 +33,8 @@ from som_classifier.verifier import Verifier
 
 Strange = tuple[Sequence[SegmentSample], Sequence[Sequence[Variant]]]
 """Windows of movement that nobody taught, and each as the classifier reads it, its only variant."""
+MANY_DIRECTIONS = 1024
+"""Directions in which the vectors of many samples are known: all but a thousandth of their variance lies in them."""
 MIN_LOG_DURATION_SD = 0.1  # of ln(duration / s): people's tempos differ by 10 % even where the training's do not
 
 
@@ -134,13 +137,26 @@ def fitted_model(
 def _training_data(
     first: FirstMaps, taught: Taught, background: Sequence[LabelledStream], preset: PyramidPreset, seed: int
 ) -> TrainingData:
-    """Pool, convolve and measure the samples and the background."""
+    """Pool, convolve and measure the samples and the background, of many samples as coordinates."""
     pooling = Pooling(first, Pyramid(preset.levels, preset.overlap), taught.mirrors)
+    if len(taught.samples) > MAX_VECTORS:
+        pooling.basis = _basis_of_some(pooling, taught, preset)
     pooled = pooling.vectors(taught.samples, taught.augmented, preset.stages)
     strange = _background(background, taught.samples, preset, taught.mirrors, seed)
-    convolved = _convolved(taught.augmented, pooled[-1], strange, preset, seed)
+    convolved, basis = _convolved(taught.augmented, pooled[-1], strange, preset, seed), None
+    if pooling.basis is not None:
+        basis = Basis.of(convolved.taught, MANY_DIRECTIONS)
+        convolved = convolved.in_basis(basis)
     measures = SampleMeasures.of(taught.samples, first, taught.measured)
-    return TrainingData(measures, pooled, pooling.of_background(*strange), convolved)
+    return TrainingData(measures, pooled, pooling.of_background(*strange), convolved, pooling.basis, basis)
+
+
+def _basis_of_some(pooling: Pooling, taught: Taught, preset: PyramidPreset) -> Basis:
+    """Find the directions of all stages' vectors from samples that are spread evenly."""
+    every = -(-len(taught.samples) * len(preset.stages) // (2 * MANY_DIRECTIONS))
+    some, beside = taught.samples[::every], len(taught.samples)
+    landmarks = pooling.vectors(some, taught.augmented[::every], preset.stages, beside)
+    return Basis.of(np.concatenate([stage.vectors for stage in landmarks]), MANY_DIRECTIONS)
 
 
 def _background(

@@ -22,6 +22,7 @@ from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 
 MAX_ROWS = 20_000  # per map of the first layer: some 60 for each of its 324 units
+MOST_FRAMES = 400_000  # of variants that these rows are drawn from: each takes a kilobyte meanwhile
 
 
 def train(
@@ -37,8 +38,7 @@ def train(
         TrainingError: fewer than two actions among the samples, or all samples move alike.
     """
     taught = Taught.of(samples, people_prefer_one_hand(samples), preset, seed)
-    every = [variant for of_sample in taught.augmented for variant in of_sample]
-    first = _first_maps(every, preset, taught.rng, progress)
+    first = _first_maps(_some(taught.augmented), preset, taught.rng, progress)
     return train_above(first, taught, background, preset, seed, progress)
 
 
@@ -68,6 +68,12 @@ def update(
     windows = KeptWindows.of(kept)
     moved = {} if windows is None else windows.moved(pooled_basis(kept), pooled_basis(above.kept)).arrays
     return replace(above, heads=model.heads, metadata=metadata, kept={**above.kept, **moved})
+
+
+def _some(augmented: Sequence[Sequence[Variant]]) -> list[Variant]:
+    """Return the variants of as many samples, spread evenly, as have about `MOST_FRAMES` frames."""
+    frames = sum(len(of_sample) * len(of_sample[0].measured[0]) for of_sample in augmented)
+    return [variant for of_sample in augmented[:: -(-frames // MOST_FRAMES)] for variant in of_sample]
 
 
 def _first_maps(

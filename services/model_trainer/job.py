@@ -24,7 +24,8 @@ from actum_examples.take import read_take
 from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.samples import select
+from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.training import TrainingError, train_to_spot, update
 from model_trainer.set_evaluation import evaluate_set
 from som_classifier.model import Model
@@ -78,7 +79,7 @@ def print_line(**fields: Any) -> None:
 def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
     """Train a model on a set, or update one; it lies in the folder afterwards."""
     before = None if arguments.model is None else load_model(arguments.model)
-    samples = samples_from(select([_snapshot(arguments)]), progress)
+    samples = sampled_from(select([_snapshot(arguments)]), progress).samples
     learnt = samples.usable, samples.streams
     if before is None:
         model = train_to_spot(*learnt, PRESETS[arguments.preset], arguments.seed, progress)

@@ -28,6 +28,7 @@ from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import evaluate
 from actum_model_trainer.report import report
 from actum_model_trainer.samples import LabelledStream, Samples, samples_from, select
+from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.side_by_side import at_most
 from actum_model_trainer.training import TrainingError, add_to, train_to_spot
 from som_classifier.attention import ATTENTIONS, MOVING
@@ -115,7 +116,10 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
 def _read(recordings: Sequence[Recording]) -> Samples:
     """Read the examples, and print which cannot be used."""
     with bars() as progress:
-        samples = samples_from(recordings, progress)
+        sampling = sampled_from(recordings, progress)
+    samples = sampling.samples
+    if remark := sampling.remark:
+        say(remark)
     for unusable in samples.unusable:
         say(f"{unusable.segment_id} of {unusable.file} was not used: {unusable.reason}")
     tell_unread(recordings)

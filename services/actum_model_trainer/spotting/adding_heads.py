@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from actum_model_trainer.basis import Basis
 from actum_model_trainer.kept import KeptWindows, pooled_basis
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.ridge import PrimalRidge
@@ -44,22 +45,46 @@ def with_added_heads(
     known, usable = before.metadata.spotting, usable_streams(streams)
     assert known is not None
     learned = _learned(before.labels, model.labels, known, usable, preset)
-    more = windows.with_labels(before.labels, model.labels)
+    known_windows = windows.with_labels(before.labels, model.labels)
+    every = known_windows
     if usable:
         drawn = [training_windows(each, model.labels, np.array(learned.window_durations_s), rng) for each in usable]
         as_many = _as_often(preset, model.metadata.samples / before.metadata.samples - 1)
         rows = window_rows(model, usable, drawn, Folds(usable, 1), as_many, rng, progress)
-        more = more.and_also(pooled_basis(model.kept).coordinates(rows.vectors), rows.completeness)
+        every = every.and_also(pooled_basis(model.kept).coordinates(rows.vectors), rows.completeness)
+    shrinkage = preset.spotting.shrinkage
+    fitted, without = (_heads(each, pooled_basis(model.kept), shrinkage) for each in (every, known_windows))
+    places = [model.labels.index(label) for label in before.labels]
     metadata = model.metadata.model_copy(update={"spotting": learned})
-    return replace(model, heads=_heads(more, model, preset), metadata=metadata, kept={**model.kept, **more.arrays})
+    heads = _changed(before, places, fitted, without)
+    return replace(model, heads=heads, metadata=metadata, kept={**model.kept, **every.arrays})
 
 
-def _heads(windows: KeptWindows, model: PyramidModel, preset: PyramidPreset) -> CompletenessHeads:
+def _heads(windows: KeptWindows, basis: Basis, shrinkage: float) -> CompletenessHeads:
     """Fit the actions' heads and the common one to the windows' coordinates, and mix them."""
-    basis = pooled_basis(model.kept)
-    fitted = PrimalRidge(windows.coordinates, with_common(windows.completeness), preset.spotting.shrinkage)
+    fitted = PrimalRidge(windows.coordinates, with_common(windows.completeness), shrinkage)
     axes = basis.axes(fitted.axes)
     return mixed_heads(CompletenessHeads(axes, basis.offsets(fitted.offsets, axes)), windows.share)
+
+
+def _changed(
+    before: PyramidModel, places: Sequence[int], fitted: CompletenessHeads, without: CompletenessHeads
+) -> CompletenessHeads:
+    """Return the heads before, changed as the new windows change heads that are fitted to coordinates.
+
+    Coordinates leave out something, which the heads before know.
+
+    Args:
+        before: the model with fewer actions.
+        places: the numbers of its actions among all.
+        fitted: to all windows.
+        without: fitted to the windows before.
+    """
+    assert before.heads is not None
+    axes, offsets = fitted.axes.copy(), fitted.offsets.copy()
+    axes[:, places] += before.heads.axes - without.axes[:, places]
+    offsets[places] += before.heads.offsets - without.offsets[places]
+    return CompletenessHeads(axes, offsets)
 
 
 def _as_often(preset: PyramidPreset, share: float) -> PyramidPreset:

@@ -91,7 +91,7 @@ def window_rows(
     vectors, completeness, of_fold = [], [], []
     for done, (stream, each) in enumerate(zip(streams, windows, strict=True)):
         progress("windows of streams", done, len(streams))
-        variants = list(varied(Variant(stream.postures, stream.velocities), stream.depth_inferred, augmentation, rng))
+        variants = list(varied(Variant((stream.postures, stream.velocities)), stream.depth_inferred, augmentation, rng))
         often = int(copies) + (rng.random(len(each.frames)) < copies % 1)
         kept = np.repeat(np.arange(len(each.frames)), np.minimum(often, len(variants)))
         drawn = rng.integers(len(variants), size=len(kept))

@@ -104,7 +104,7 @@ def untuned(
 ) -> PyramidSpottingMetadata:
     """Return the metadata before a threshold is chosen."""
     durations_s, log_means, log_sds = _durations(streams, labels, search)
-    marked = sum((stream.marked for stream in streams), Found())
+    marked = Found.of_all(stream.marked for stream in streams)
     return PyramidSpottingMetadata(
         interval_s=search.interval_s,
         lag_s=search.lag_s,
