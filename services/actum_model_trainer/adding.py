@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from actum_model_trainer.augmentation import augmentation_for, variants
 from actum_model_trainer.basis import Basis
+from actum_model_trainer.gathering import postures_of
 from actum_model_trainer.kept import KeptWindows, kept_arrays, kept_data, pooled_basis
-from actum_model_trainer.layers_above import fitted_model, postures_of
+from actum_model_trainer.layers_above import fitted_model
 from actum_model_trainer.left_out_by_coordinates import with_what_was_left_out
 from actum_model_trainer.pooling import PooledVectors, Pooling
 from actum_model_trainer.progress import Progress

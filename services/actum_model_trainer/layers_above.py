@@ -1,77 +1,34 @@
 """Training of the layers above the first maps: discriminants, second opinion, verifier, action map, neurons."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from actum.arrays import Array, Floats
-from actum_model_trainer.augmentation import Variant, augmentation_for, variants
-from actum_model_trainer.background import negatives_of
-from actum_model_trainer.basis import Basis
+from actum.arrays import Array
 from actum_model_trainer.confidence import body_movement, inverse_temperatures
-from actum_model_trainer.convolution_training import Convolved, blended
+from actum_model_trainer.convolution_training import blended
 from actum_model_trainer.discriminants import FittedStage, fit_discriminants
+from actum_model_trainer.gathering import Taught, gathered
 from actum_model_trainer.kept import kept_arrays
-from actum_model_trainer.pooling import MAX_VECTORS, PooledVectors, Pooling
+from actum_model_trainer.pooling import PooledVectors
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.provenance import actions_of, provenance
-from actum_model_trainer.samples import LabelledStream, SegmentSample
+from actum_model_trainer.provenance import provenance
+from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.side_by_side import side_by_side
-from actum_model_trainer.training_data import SampleMeasures, TrainingData, duration_s
+from actum_model_trainer.training_data import TrainingData
 from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from actum_model_trainer.verifier_training import trained_verifier
 from som_classifier.convolutions import SecondOpinion
 from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import ConvolutionPreset, PyramidPreset
-from som_classifier.pyramid import Pyramid
 from som_classifier.pyramid_metadata import PyramidMetadata
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.stage_discriminants import StageDiscriminants
 from som_classifier.verifier import Verifier
 
-Strange = tuple[Sequence[SegmentSample], Sequence[Sequence[Variant]]]
-"""Windows of movement that nobody taught, and each as the classifier reads it, its only variant."""
-MANY_DIRECTIONS = 1024
-"""Directions in which the vectors of many samples are known: all but a thousandth of their variance lies in them."""
 MIN_LOG_DURATION_SD = 0.1  # of ln(duration / s): people's tempos differ by 10 % even where the training's do not
-
-
-@dataclass(frozen=True, eq=False)
-class Taught:
-    """The samples of a training, and what is drawn of them.
-
-    Attributes:
-        samples: as measured.
-        labels: the actions, sorted.
-        mirrors: whether an action of the left arm is read as its mirror image.
-        augmented: the variants of each sample, the one as measured first.
-        rng: as it is after the variants were drawn.
-    """
-
-    samples: Sequence[SegmentSample]
-    labels: Sequence[str]
-    mirrors: bool
-    augmented: Sequence[Sequence[Variant]]
-    rng: np.random.Generator
-
-    @classmethod
-    def of(cls, samples: Sequence[SegmentSample], mirrors: bool, preset: PyramidPreset, seed: int) -> "Taught":
-        """Draw the variants.
-
-        Raises:
-            TrainingError: fewer than two actions among the samples.
-        """
-        labels, rng = actions_of(samples), np.random.default_rng(seed)
-        augmentation = augmentation_for([sample.person for sample in samples], preset)
-        augmented = [list(variants(sample, augmentation, mirrors, rng)) for sample in samples]
-        return cls(samples, labels, mirrors, augmented, rng)
-
-    @property
-    def measured(self) -> list[Floats]:
-        """The postures of each sample as measured."""
-        return [of_sample[0].postures for of_sample in self.augmented]
 
 
 def train_above(
@@ -87,7 +44,7 @@ def train_above(
     Raises:
         TrainingError: all samples move alike.
     """
-    data = _training_data(first, taught, background, preset, seed)
+    data = gathered(first, taught, background, preset, seed, progress)
     origin = provenance(taught.samples, preset, seed) | {"mirrors": taught.mirrors}
     return replace(fitted_model(first, data, origin, preset, taught.rng, progress), kept=kept_arrays(data))
 
@@ -132,56 +89,6 @@ def fitted_model(
     )
     described = PyramidMetadata.model_validate(metadata)
     return PyramidModel(first, stages, opinion, verifier, body, upper.action_map, upper.layer3, described)
-
-
-def _training_data(
-    first: FirstMaps, taught: Taught, background: Sequence[LabelledStream], preset: PyramidPreset, seed: int
-) -> TrainingData:
-    """Pool, convolve and measure the samples and the background, of many samples as coordinates."""
-    pooling = Pooling(first, Pyramid(preset.levels, preset.overlap), taught.mirrors)
-    if len(taught.samples) > MAX_VECTORS:
-        pooling.basis = _basis_of_some(pooling, taught, preset)
-    pooled = pooling.vectors(taught.samples, taught.augmented, preset.stages)
-    strange = _background(background, taught.samples, preset, taught.mirrors, seed)
-    convolved, basis = _convolved(taught.augmented, pooled[-1], strange, preset, seed), None
-    if pooling.basis is not None:
-        basis = Basis.of(convolved.taught, MANY_DIRECTIONS)
-        convolved = convolved.in_basis(basis)
-    measures = SampleMeasures.of(taught.samples, first, taught.measured)
-    return TrainingData(measures, pooled, pooling.of_background(*strange), convolved, pooling.basis, basis)
-
-
-def _basis_of_some(pooling: Pooling, taught: Taught, preset: PyramidPreset) -> Basis:
-    """Find the directions of all stages' vectors from samples that are spread evenly."""
-    every = -(-len(taught.samples) * len(preset.stages) // (2 * MANY_DIRECTIONS))
-    some, beside = taught.samples[::every], len(taught.samples)
-    landmarks = pooling.vectors(some, taught.augmented[::every], preset.stages, beside)
-    return Basis.of(np.concatenate([stage.vectors for stage in landmarks]), MANY_DIRECTIONS)
-
-
-def _background(
-    streams: Sequence[LabelledStream], samples: Sequence[SegmentSample], preset: PyramidPreset, mirrors: bool, seed: int
-) -> Strange:
-    """Draw the background's windows, each read as the classifier reads it."""
-    rng = np.random.default_rng(seed)
-    durations_s = np.array([duration_s(sample) for sample in samples])
-    windows = negatives_of(streams, durations_s, preset.background, rng)
-    return windows, [[next(variants(window, preset, mirrors, rng))] for window in windows]
-
-
-def _convolved(
-    augmented: Sequence[Sequence[Variant]], pooled: PooledVectors, strange: Strange, preset: PyramidPreset, seed: int
-) -> Convolved:
-    """Convolve the same variants that are pooled, and the background."""
-    beside = [variant.postures for (variant,) in strange[1]]
-    taught = postures_of(augmented, pooled)
-    return Convolved.of(taught, beside, preset.convolutions.biases, np.random.default_rng(seed))
-
-
-def postures_of(augmented: Sequence[Sequence[Variant]], pooled: PooledVectors) -> list[Array]:
-    """Return the postures of the variants that were pooled, by vector."""
-    rows = zip(pooled.sample_indices.tolist(), pooled.variant_indices.tolist(), strict=True)
-    return [augmented[sample][variant].postures for sample, variant in rows]
 
 
 def _fitted_stages(data: TrainingData, shrinkage: float, progress: Progress) -> list[FittedStage]:

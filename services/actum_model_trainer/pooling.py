@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from actum.arrays import Indices
 from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.basis import Basis
+from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.first_layer import FirstMaps
 from som_classifier.frame_activity import UM_PER_M
@@ -54,6 +55,7 @@ class Pooling:
         variants: Sequence[Sequence[Variant]],
         stages: Sequence[Sequence[float]],
         beside: int = 0,
+        progress: Progress = silent,
     ) -> list[PooledVectors]:
         """Return the vectors of each stage, evenly thinned out to about `MAX_VECTORS`, at least one of each sample.
 
@@ -62,10 +64,12 @@ class Pooling:
             variants: those of each sample.
             stages: the shares of an action (0 to 1) that belong to each stage.
             beside: how many samples were pooled before, which count in the thinning out.
+            progress: of the pooling.
         """
         rows = [Rows(self.basis) for _ in stages]
         of_row: list[list[tuple[int, int]]] = [[] for _ in stages]
         for index, (sample, of_sample) in enumerate(zip(samples, variants, strict=True)):
+            progress("pooling of examples", index, len(samples))
             sums = _VariantSums(self, sample, of_sample)
             for stage, fractions in enumerate(stages):
                 pairs = list(product(fractions, range(len(of_sample))))
@@ -73,6 +77,7 @@ class Pooling:
                 for fraction, variant in pairs[index % step :: step]:
                     rows[stage].append(self._pyramid.vector(sums.until(variant, fraction)))
                     of_row[stage].append((index, variant))
+        progress("pooling of examples", len(samples), len(samples))
         return [
             PooledVectors(vectors.stacked(), *np.array(indices).T)
             for vectors, indices in zip(rows, of_row, strict=True)

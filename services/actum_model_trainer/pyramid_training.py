@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 from actum.arrays import Floats
 from actum.som import Som
 from actum_model_trainer.augmentation import Variant
+from actum_model_trainer.gathering import Taught
 from actum_model_trainer.hand_preference import people_prefer_one_hand
 from actum_model_trainer.kept import KeptWindows, pooled_basis
-from actum_model_trainer.layers_above import Taught, train_above
+from actum_model_trainer.layers_above import train_above
 from actum_model_trainer.median_distances import median_quantization_error2
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream, SegmentSample

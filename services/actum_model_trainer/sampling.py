@@ -6,9 +6,12 @@ kept of what fits.
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+
+import numpy as np
 
 from actum.recording import Recording
+from actum_model_trainer.background import ARRAYS
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample, Unusable, each_read
 
@@ -17,6 +20,9 @@ MOST_SEGMENTS = 10_000
 60 kB of memory."""
 MOST_STREAM_FRAMES = 300_000
 """Frames of people's streams that are kept, nearly three hours: what the search learns from and is tuned on."""
+
+LONGEST_PIECE = 20_000
+"""Frames of a stream that are held together, ten minutes: the first layer's activity takes ten kilobytes a frame."""
 
 
 @dataclass
@@ -45,10 +51,11 @@ class Sampling:
                 self.segments_read += 1
                 drawn = _drawn(f"{segment.file}\0{segment.sensor}\0{segment.segment_id}")
                 self._segments.setdefault(segment.label, []).append((drawn, self._read, segment))
-        for stream in more.streams:
+        for piece in (piece for stream in more.streams for piece in pieces(stream)):
             self._read += 1
-            self.frames_read += len(stream.stamps_ns)
-            self._streams.append((_drawn(f"{stream.file}\0{stream.agent}"), self._read, stream))
+            self.frames_read += len(piece.stamps_ns)
+            drawn = _drawn(f"{piece.file}\0{piece.agent}\0{piece.stamps_ns[0] if len(piece.stamps_ns) else 0}")
+            self._streams.append((drawn, self._read, piece))
         self._drop()
 
     @property
@@ -95,6 +102,33 @@ def sampled_from(recordings: Sequence[Recording], progress: Progress = silent) -
     for samples in each_read(recordings, progress):
         sampling.add(samples)
     return sampling
+
+
+def pieces(stream: LabelledStream) -> list[LabelledStream]:
+    """Cut a long stream where no labelled segment is, if there is such a place, into pieces of `LONGEST_PIECE`."""
+    found, first, frames = [], 0, len(stream.stamps_ns)
+    while frames - first > LONGEST_PIECE:
+        after = _cut(stream, first)
+        found.append(_piece(stream, first, after))
+        first = after
+    return [*found, _piece(stream, first, frames)] if found else [stream]
+
+
+def _cut(stream: LabelledStream, first: int) -> int:
+    """Return the frame at which the next piece begins."""
+    stamps_ns = stream.stamps_ns[first + LONGEST_PIECE // 2 : first + LONGEST_PIECE + 1]
+    free = np.ones(len(stamps_ns), dtype=bool)
+    for start_ns, end_ns, _ in stream.segments:
+        free[slice(*np.searchsorted(stamps_ns, (start_ns, end_ns + 1)).tolist())] = False
+    return first + LONGEST_PIECE // 2 + int(np.flatnonzero(free)[-1] if free.any() else len(free) - 1)
+
+
+def _piece(stream: LabelledStream, first: int, after: int) -> LabelledStream:
+    """Return some of a stream's frames, in memory of their own, and the segments that begin there."""
+    arrays = {name: getattr(stream, name)[first:after].copy() for name in ("stamps_ns", *ARRAYS)}
+    last_ns = arrays["stamps_ns"][-1]
+    own = tuple(each for each in stream.segments if arrays["stamps_ns"][0] <= each[0] <= last_ns)
+    return replace(stream, segments=own, **arrays)
 
 
 def even_quota(counts: Sequence[int], most: int) -> int:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from actum_model_trainer import layers_above, pooling, pyramid_training
+from actum_model_trainer import gathering, pooling, pyramid_training
 from actum_model_trainer.training import add_to, train
 from performers import TINY
 from som_classifier.presets import PRESETS
@@ -34,7 +34,7 @@ def scores(model: PyramidModel) -> np.ndarray:
 
 def test_coordinates_of_many_samples_give_nearly_the_scores_of_vectors(monkeypatch: pytest.MonkeyPatch) -> None:
     whole = trained()
-    monkeypatch.setattr(layers_above, "MAX_VECTORS", FEW)
+    monkeypatch.setattr(gathering, "MAX_VECTORS", FEW)
     reduced = trained()
     assert reduced.id != whole.id
     for name in ("postures", "velocities", "arms"):
@@ -43,7 +43,7 @@ def test_coordinates_of_many_samples_give_nearly_the_scores_of_vectors(monkeypat
 
 
 def test_examples_can_be_added_to_a_model_of_many_samples(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(layers_above, "MAX_VECTORS", FEW)
+    monkeypatch.setattr(gathering, "MAX_VECTORS", FEW)
     monkeypatch.setitem(PRESETS, TINY.name, TINY)
     model = train([sample for sample in taught().usable if sample.label != "swing"], TINY)
     assert isinstance(model, PyramidModel)

@@ -4,11 +4,12 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from actum_model_trainer import sampling
 from actum_model_trainer.samples import Samples, Unusable
-from actum_model_trainer.sampling import Sampling, even_quota
+from actum_model_trainer.sampling import Sampling, even_quota, pieces
 from unmarked import taught
 
 
@@ -73,3 +74,28 @@ def test_what_cannot_be_used_is_still_told() -> None:
 )
 def test_rare_actions_leave_their_room_to_the_others(counts: list[int], most: int, quota: int) -> None:
     assert even_quota(counts, most) == quota
+
+
+def test_a_long_stream_is_cut_between_segments_and_nothing_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sampling, "LONGEST_PIECE", 300)
+    stream = taught().streams[0]
+    cut = pieces(stream)
+    assert len(cut) > 3 and all(len(piece.stamps_ns) <= 300 for piece in cut)
+    assert np.array_equal(np.concatenate([piece.postures for piece in cut]), stream.postures)
+    assert [segment for piece in cut for segment in piece.segments] == list(stream.segments)
+    for piece in cut:
+        assert all(end_ns <= piece.stamps_ns[-1] for _, end_ns, _ in piece.segments)
+
+
+def test_a_stream_without_a_place_to_cut_is_cut_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sampling, "LONGEST_PIECE", 300)
+    stream = taught().streams[0]
+    whole = replace(stream, segments=((int(stream.stamps_ns[0]), int(stream.stamps_ns[-1]), "lift"),))
+    cut = pieces(whole)
+    assert all(len(piece.stamps_ns) == 300 for piece in cut[:-1])
+    assert sum(len(piece.stamps_ns) for piece in cut) == len(stream.stamps_ns)
+    assert [len(piece.segments) for piece in cut] == [1, *[0] * (len(cut) - 1)]
+
+
+def test_a_short_stream_stays_as_it_is() -> None:
+    assert pieces(taught().streams[0]) == [taught().streams[0]]
