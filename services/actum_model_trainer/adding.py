@@ -59,13 +59,13 @@ def add(
         progress: of the fitting.
 
     Raises:
-        TrainingError: there is no example, or nothing is kept.
+        TrainingError: there is no example, or nothing that fits the model is kept.
     """
     if not samples:
         raise TrainingError("the recordings contain no usable examples to add: record examples of a new action")
     known, rng = model.metadata, np.random.default_rng(seed)
     as_known = replace(preset, levels=tuple(known.levels), overlap=known.overlap, epochs=min(preset.epochs, EPOCHS))
-    before, windows = kept_data(kept, model.opinion.convolutions), KeptWindows.of(kept)
+    before, windows = kept_data(kept, model), KeptWindows.of(kept)
     data = _joined(before, _Measured.of(model, before.measures, samples, as_known, rng))
     origin = _origin(known, data) | {"data_digest": digest, "updated_from": model.id}
     above = fitted_model(model.first, data, origin, as_known, rng, progress)

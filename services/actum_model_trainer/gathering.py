@@ -22,7 +22,7 @@ from som_classifier.pyramid import Pyramid
 Strange = tuple[Sequence[SegmentSample], Sequence[Sequence[Variant]]]
 """Windows of movement that nobody taught, and each as the classifier reads it, its only variant."""
 MANY_DIRECTIONS = 1024
-"""Directions in which the vectors of many samples are known: all but a thousandth of their variance lies in them."""
+"""Directions in which the vectors of many samples are known: at least 99.7 % of their variance lies in them."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,13 +17,14 @@ from actum_model_trainer.convolution_training import Convolved
 from actum_model_trainer.pooling import PooledVectors
 from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.training_data import SampleMeasures, TrainingData
-from som_classifier.convolutions import Convolutions
 from som_classifier.model import KEPT, Arrays
+from som_classifier.pyramid_model import PyramidModel
 
 RANK = 256
-"""Directions that are kept: 96 % of the variance of pooled vectors lies in them, and the penalty shrinks the others."""
+"""Directions that are kept: 94 to 98 % of the variance of pooled vectors lies in them."""
 MOST_RANK = 2 * RANK
 """Most directions that are kept after additions, each of which appends some, or of a training on many samples."""
+TRAIN_AGAIN = "train it again, with this version of actum, from recordings of all its actions"
 COARSE = np.float16
 """The precision of what is kept: its rounding is small beside the noise of a sensor."""
 
@@ -111,28 +112,38 @@ def kept_arrays(data: TrainingData) -> dict[str, NDArray[Any]]:
     return {KEPT + name: array for name, array in kept.items()}
 
 
-def kept_data(arrays: Arrays, convolutions: Convolutions) -> TrainingData:
+def kept_data(arrays: Arrays, model: PyramidModel) -> TrainingData:
     """Return the training data that a model keeps.
 
     Raises:
-        TrainingError: it keeps none.
+        TrainingError: it keeps none, or they are another model's.
     """
     if not arrays:
-        raise TrainingError(
-            "the model keeps nothing of its training, so no action can be added to it: train it again, with this "
-            "version of actum, from recordings of all its actions"
-        )
-    kept = {name.removeprefix(KEPT): array for name, array in arrays.items()}
-    stages: list[PooledVectors] = []
-    while (name := f"stage_{len(stages)}") in kept:
-        samples = kept[f"{name}_samples"].astype(np.intp)
-        stages.append(PooledVectors(kept[name].astype(np.float32), samples, np.zeros_like(samples)))
+        raise TrainingError(f"the model keeps nothing of its training, so no action can be added to it: {TRAIN_AGAIN}")
+    try:
+        data = _restored({name.removeprefix(KEPT): array for name, array in arrays.items()}, model)
+    except (KeyError, ValueError, IndexError) as error:
+        raise TrainingError(f"what the model keeps of its training is damaged ({error}): {TRAIN_AGAIN}") from None
+    pooled, features = data.pooled_basis, data.convolved_basis
+    assert pooled is not None and features is not None
+    inputs = len(pooled.directions), len(features.directions)
+    if data.labels != model.labels or inputs != (model.stages.axes.shape[1], len(model.opinion.axes)):
+        raise TrainingError(f"what the model keeps of its training belongs to another model: {TRAIN_AGAIN}")
+    return data
+
+
+def _restored(kept: Mapping[str, NDArray[Any]], model: PyramidModel) -> TrainingData:
+    stages = []
+    for number in range(len(model.metadata.fractions)):
+        samples = kept[f"stage_{number}_samples"].astype(np.intp)
+        vectors = kept[f"stage_{number}"].astype(np.float32)
+        stages.append(PooledVectors(vectors, samples, np.zeros_like(samples)))
     convolved = [kept[f"convolved_{name}"].astype(np.float32) for name in ("spread", "taught", "background")]
     return TrainingData(
         SampleMeasures(**{each.name: kept[each.name] for each in fields(SampleMeasures)}),
         stages,
         kept["background"].astype(np.float32),
-        Convolved(convolutions, *convolved),
+        Convolved(model.opinion.convolutions, *convolved),
         _restored_basis("pooled", kept),
         _restored_basis("convolved", kept),
     )

@@ -1,7 +1,9 @@
 """Examples are added to a trained model: it knows the new action, keeps its maps, and still knows the others."""
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -121,6 +123,23 @@ def test_more_actions_can_be_added_one_after_the_other() -> None:
 def test_a_model_that_keeps_nothing_is_refused() -> None:
     with pytest.raises(TrainingError, match="keeps nothing of its training.*train it again"):
         add_to(without_swings(), NOTHING_KEPT, new_samples(), [])
+
+
+@pytest.mark.parametrize(
+    ("kept", "said"),
+    [
+        pytest.param(lambda kept: {n: a for n, a in kept.items() if n != "kept_background"}, "damaged", id="missing"),
+        pytest.param(
+            lambda kept: kept | {"kept_labels": np.char.add(kept["kept_labels"], "x")}, "another model", id="other"
+        ),
+        pytest.param(
+            lambda kept: kept | {"kept_pooled_directions": kept["kept_pooled_directions"][1:]}, "another", id="shape"
+        ),
+    ],
+)
+def test_what_does_not_fit_the_model_is_refused(kept: Callable[[Any], Any], said: str) -> None:
+    with pytest.raises(TrainingError, match=f"{said}.*train it again"):
+        add_to(without_swings(), kept(dict(without_swings().kept)), new_samples(), [])
 
 
 def test_recordings_without_examples_are_refused() -> None:
