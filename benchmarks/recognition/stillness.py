@@ -141,10 +141,15 @@ def ratios_of(each: DevelopmentSet, pieces: Pieces) -> Iterator[Ratios]:
     draws = list(few_examples(each.examples, each.of_few))
     taught = [[(draw.training(1, count), draw.test) for draw in draws] for count in (1, 5)]
     for way, splits in zip(WAYS, [*taught, [(own.training, own.test) for own in each.splits]], strict=True):
-        usual_m = [least_movement_m([e.sample for e in own]) / LEAST_MOVEMENT_SHARE for own, _ in splits]
+        usual_m = [_usual_m([e.sample for e in own]) for own, _ in splits]
         acting = [_moved([e.sample for e in test]) / of for of, (_, test) in zip(usual_m, splits, strict=True)]
         still = {name: np.divide.outer(_moved(own), usual_m).ravel() for name, own in pieces.items()}
         yield Ratios(each.name, way, np.concatenate(acting), still)
+
+
+def _usual_m(samples: Sequence[SegmentSample]) -> float:
+    labels = np.unique([sample.label for sample in samples], return_inverse=True)[1]
+    return least_movement_m(_moved(samples), labels) / LEAST_MOVEMENT_SHARE
 
 
 def _moved(samples: Sequence[SegmentSample]) -> Floats:

@@ -1,5 +1,6 @@
 """The model of the simulated scene that comes with actum, and how it is trained."""
 
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -9,8 +10,9 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import samples_from
 from actum_model_trainer.training import train_to_spot
 from scene_simulator.everyday import Pauses
-from som_classifier.model import Model
+from som_classifier.model import NOTHING_KEPT, Model
 from som_classifier.presets import DEFAULT
+from som_classifier.pyramid_model import PyramidModel
 
 SIMULATED_MODEL = Path(__file__).with_name("simulated_model.npz")
 """The model's file, which `make simulated-model` writes."""
@@ -28,13 +30,18 @@ minutes, not fifteen."""
 
 
 def trained(progress: Progress) -> Model:
-    """Train the model on a continuous recording of each person, about a minute and a half long."""
+    """Train the model on a continuous recording of each person, about a minute and a half long.
+
+    It keeps nothing of its training: it comes with actum, and would take several times the space.
+    """
     with TemporaryDirectory(prefix="actum-simulated-") as folder:
         files = [Path(folder) / f"training-{actor}.mcap" for actor in TRAINERS]
         for actor, file in zip(TRAINERS, files, strict=True):
             write_examples(file, TRAINING_REPETITIONS, actor, TRAINING_SEED, "familiar", pauses=PAUSES)
         samples = samples_from(list(map(Recording, files)), progress)
-    return train_to_spot(samples.usable, samples.streams, DEFAULT, 0, progress)
+    model = train_to_spot(samples.usable, samples.streams, DEFAULT, 0, progress)
+    assert isinstance(model, PyramidModel)
+    return replace(model, kept=NOTHING_KEPT)
 
 
 def learned_from(model: Model) -> str:

@@ -19,20 +19,41 @@ _BONE_NAMES = sorted({_BONE_OF_JOINT[child] for _, child, _ in BONES})
 
 @dataclass(frozen=True, eq=False)
 class Variant:
-    """A sample as measured, or an augmented version of it.
+    """A sample as measured, or an augmented version of it, which is worked out each time that it is asked for.
 
     Attributes:
-        postures: (n, 15, 3), metres to the left, up and forward from the torso.
-        velocities: (n, 15, 3), of the same joints.
+        measured: (n, 15, 3) twice: postures in metres to the left, up and forward from the torso, and velocities of the
+            same joints.
+        turn: (3, 3), rotates row vectors; None where nothing is turned.
+        scaling: (15, 15), changes the bones' lengths; None where these stay.
+        tempo: by which velocities are multiplied.
     """
 
-    postures: Array
-    velocities: Array
+    measured: tuple[Array, Array]
+    turn: Array | None = None
+    scaling: Array | None = None
+    tempo: float = 1.0
+
+    @property
+    def postures(self) -> Array:
+        """The postures, (n, 15, 3)."""
+        return self._changed(self.measured[0])
+
+    @property
+    def velocities(self) -> Array:
+        """The velocities, (n, 15, 3)."""
+        changed = self._changed(self.measured[1])
+        return changed if self.tempo == 1.0 else self.tempo * changed
 
     @property
     def mirrored(self) -> "Variant":
         """Its mirror image, left and right exchanged."""
-        return Variant(mirrored(self.postures), mirrored(self.velocities))
+        return Variant((mirrored(self.postures), mirrored(self.velocities)))
+
+    def _changed(self, vectors: Array) -> Array:
+        if self.turn is not None:
+            return vectors @ self.turn
+        return vectors if self.scaling is None else _applied(self.scaling, vectors)
 
 
 def augmentation_for(people: Sequence[str], preset: PyramidPreset) -> PyramidPreset:
@@ -51,7 +72,7 @@ def variants(
         mirrors: whether a sample of the left arm is mirrored first, as the classifier reads it.
         rng: draws the proportions.
     """
-    measured = Variant(sample.postures, sample.velocities)
+    measured = Variant((sample.postures, sample.velocities))
     as_read = measured.mirrored if mirrors and sample.acting_hands[-1] == "left" else measured
     yield from varied(as_read, sample.depth_inferred, preset, rng)
 
@@ -61,15 +82,14 @@ def varied(
 ) -> Iterator[Variant]:
     """Yield postures and velocities as measured, then rotated, then with other bodies' proportions and tempo."""
     yield measured
+    own = measured.postures, measured.velocities
     for yaw_deg, pitch_deg in zip(preset.turns_deg, preset.leans_deg, strict=True):
         pitch = pitch_rotation(np.radians(pitch_deg if depth_inferred else 0.0))
-        rotation = yaw_rotation(np.radians(yaw_deg)) @ pitch
-        yield Variant(measured.postures @ rotation, measured.velocities @ rotation)
+        yield Variant(own, turn=yaw_rotation(np.radians(yaw_deg)) @ pitch)
     for _ in range(preset.others.count):
         factors = np.exp(rng.normal(0.0, preset.others.build_sd, len(_BONE_NAMES)))
         scaling = bone_scaling(dict(zip(_BONE_NAMES, factors, strict=True)))
-        velocities = preset.others.tempo * _applied(scaling, measured.velocities)
-        yield Variant(_applied(scaling, measured.postures), velocities)
+        yield Variant(own, scaling=scaling, tempo=preset.others.tempo)
 
 
 def yaw_rotation(radians: float) -> Array:

@@ -7,22 +7,20 @@ people.
 """
 
 import math
-from collections import defaultdict
 from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from actum.arrays import Array, Floats, Indices
 from actum.limits import MAX_COORDINATE_M
 from actum_model_trainer.discriminants import FittedStage
-from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.temperature_scaling import matched_inverse_temperature
 from actum_model_trainer.upper_layers import UpperLayers
-from som_classifier.body_movement import BodyMovement, log_movements
+from som_classifier.body_movement import BodyMovement
 from som_classifier.first_layer import FirstMaps
-from som_classifier.kinematics import averaged, movement_m
 from som_classifier.presets import Prior
 
 LEAST_MOVEMENT_SHARE = 0.5
@@ -67,36 +65,43 @@ def cross_validated_inverse_temperature(stage: FittedStage, upper: UpperLayers) 
     return matched_inverse_temperature(upper.cosines(scores), (right + 1) / (len(stage.targets) + 2))
 
 
-def expected_log_errors(first: FirstMaps, postures: Sequence[Floats], targets: Indices, prior: Prior) -> list[float]:
+def log_errors_of(first: FirstMaps, postures: Sequence[Floats]) -> Array:
+    """Return the mean log(d²) of each sample's postures (frames, 15, 3), d the distance (m) to the posture map."""
+    return np.array([first.log_errors(frames, first.winners(frames)).mean() for frames in postures])
+
+
+def expected_log_errors(log_errors: Array, targets: Indices, prior: Prior) -> list[float]:
     """Return for each action the mean log(d²), d the distance (m) to the posture map, to expect of a new person.
 
     It is the prior's, plus the difference between the action's own mean and that of all samples: a map has few units
     for rare postures. Each action's mean difference is shrunk towards 0, as if by one more sample of difference 0.
 
     Args:
-        first: the trained maps of the first layer.
-        postures: of each sample, as the classifier reads it, (frames, 15, 3).
+        log_errors: (n,), of the samples.
         targets: (n,), the samples' actions.
         prior: of models of other people's actions.
     """
-    log_errors = np.array([first.log_errors(frames, first.winners(frames)).mean() for frames in postures])
     above_mean = np.bincount(targets, weights=log_errors - log_errors.mean()) / (np.bincount(targets) + 1)
     return [float(prior.log_error + difference) for difference in above_mean]
 
 
-def least_movement_m(samples: Sequence[SegmentSample]) -> float:
+def least_movement_m(movements_m: Array, targets: Indices) -> float:
     """Return the movement (m) below which a segment may be none of the trained actions.
 
     It is a share of that of the action that moves least, so that holding still can be taught, and that of an action is
     the median over its samples, so that a single one marked in the wrong place does not decide.
+
+    Args:
+        movements_m: (n,), of the samples.
+        targets: (n,), their actions.
     """
-    movements: defaultdict[str, list[float]] = defaultdict(list)
-    for sample in samples:
-        movements[sample.label].append(movement_m(averaged(sample.stamps_ns, sample.postures)))
-    return round(LEAST_MOVEMENT_SHARE * min(median(of_action) for of_action in movements.values()), 4)
+    medians = [median(movements_m[targets == target].tolist()) for target in np.unique(targets)]
+    return float(round(LEAST_MOVEMENT_SHARE * min(medians), 4))
 
 
-def body_movement(samples: Sequence[SegmentSample], targets: Indices, prior: Prior, people: int) -> BodyMovement:
+def body_movement(
+    moved: Array, movements_m: Array, targets: Indices, who: NDArray[np.str_], prior: Prior, people: int
+) -> BodyMovement:
     """Return how much people move in each action.
 
     How far legs and trunk may move above that is a quantile over the samples, each beside the mean of its action by
@@ -104,21 +109,24 @@ def body_movement(samples: Sequence[SegmentSample], targets: Indices, prior: Pri
     move as it likes.
 
     Args:
-        samples: of all actions.
-        targets: (n,), their actions.
+        moved: (n, 2), the logarithm of how much legs and trunk move in each sample (m), NaN where that is not seen.
+        movements_m: (n,), how much everything moves.
+        targets: (n,), the samples' actions.
+        who: (n,), who performed each sample.
         prior: of models of other people's actions.
         people: who performed the samples.
     """
-    moved = np.array([log_movements(averaged(each.stamps_ns, each.postures)) for each in samples])
-    who = np.array([each.person for each in samples])
-    above = []
-    for own, target, person in zip(moved, targets, who, strict=True):
-        above.append(own - _means(moved[(targets == target) & (who != person)]))
-    usual = [_means(moved[targets == target]) for target in range(targets.max() + 1)]
-    shown = np.array([_quantile(of_part, prior.movement_above) for of_part in np.transpose(above)])
+    above, usual = np.empty_like(moved), []
+    for target in range(targets.max() + 1):
+        of_action = np.flatnonzero(targets == target)
+        usual.append(_means(moved[of_action]))
+        for person in np.unique(who[of_action]):
+            own = who[of_action] == person
+            above[of_action[own]] = moved[of_action[own]] - _means(moved[of_action[~own]])
+    shown = np.array([_quantile(of_part, prior.movement_above) for of_part in above.T])
     most_above = np.maximum(averaged_with_prior(shown, prior.movement_above, prior, people), LEAST_ABOVE)
-    anything = math.log(MAX_COORDINATE_M)
-    return BodyMovement(np.nan_to_num(usual, nan=anything).tolist(), most_above.tolist(), least_movement_m(samples))
+    least_m = least_movement_m(movements_m, targets)
+    return BodyMovement(np.nan_to_num(usual, nan=math.log(MAX_COORDINATE_M)).tolist(), most_above.tolist(), least_m)
 
 
 def _means(rows: Array) -> Array:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from actum.arrays import Array
+from actum_model_trainer.basis import Basis
 from actum_model_trainer.discriminants import Discriminants
 from som_classifier.convolutions import COORDINATES, FILTERS, WEIGHTS, Convolutions, Floats32, resampled
 
@@ -65,6 +66,11 @@ class Convolved:
         spread[spread == 0] = 1.0
         beside = np.array([convolutions.features(resampled(each)) for each in background], np.float32)
         return cls(convolutions, spread, features / spread, beside.reshape(-1, len(spread)) / spread)
+
+    def in_basis(self, basis: Basis) -> "Convolved":
+        """Return coordinates in the place of features."""
+        coordinates = basis.coordinates(self.taught), basis.coordinates(self.background)
+        return Convolved(self.convolutions, self.spread, *coordinates)
 
     def axes(self, fitted: Discriminants) -> Floats32:
         """Return the axes for features as they are of discriminants that were fitted to these."""

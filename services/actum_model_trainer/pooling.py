@@ -7,8 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Floats, Indices
+from actum.arrays import Indices
 from actum_model_trainer.augmentation import Variant
+from actum_model_trainer.basis import Basis
+from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.first_layer import FirstMaps
 from som_classifier.frame_activity import UM_PER_M
@@ -29,7 +31,8 @@ class PooledVectors(NamedTuple):
     variant_indices: Indices
 
 
-MAX_VECTORS = 2_000  # per stage: more make the discriminants hardly better, and their training costs n³
+MAX_VECTORS = 2_000  # per stage, beyond one of each sample: more make the discriminants hardly better
+CHUNK = 256  # vectors that are reduced to coordinates at once
 MIN_FRAMES = 3  # of a share of an action: with fewer the live classifier gives no answer either
 
 
@@ -39,34 +42,44 @@ class Pooling:
     Attributes:
         first: the trained maps.
         mirrors: whether actions of the left arm are read as their mirror image.
+        basis: in which vectors are given as coordinates; None where they are given whole.
     """
 
-    def __init__(self, first: FirstMaps, pyramid: Pyramid, mirrors: bool) -> None:
-        self.first, self.mirrors = first, mirrors
+    def __init__(self, first: FirstMaps, pyramid: Pyramid, mirrors: bool, basis: Basis | None = None) -> None:
+        self.first, self.mirrors, self.basis = first, mirrors, basis
         self._pyramid = pyramid
 
     def vectors(
-        self, samples: Sequence[SegmentSample], variants: Sequence[Sequence[Variant]], stages: Sequence[Sequence[float]]
+        self,
+        samples: Sequence[SegmentSample],
+        variants: Sequence[Sequence[Variant]],
+        stages: Sequence[Sequence[float]],
+        beside: int = 0,
+        progress: Progress = silent,
     ) -> list[PooledVectors]:
-        """Return the vectors of each stage, evenly thinned out to about `MAX_VECTORS`.
+        """Return the vectors of each stage, evenly thinned out to about `MAX_VECTORS`, at least one of each sample.
 
         Args:
             samples: of the training.
             variants: those of each sample.
             stages: the shares of an action (0 to 1) that belong to each stage.
+            beside: how many samples were pooled before, which count in the thinning out.
+            progress: of the pooling.
         """
-        rows: list[list[Floats]] = [[] for _ in stages]
+        rows = [Rows(self.basis) for _ in stages]
         of_row: list[list[tuple[int, int]]] = [[] for _ in stages]
         for index, (sample, of_sample) in enumerate(zip(samples, variants, strict=True)):
+            progress("pooling of examples", index, len(samples))
             sums = _VariantSums(self, sample, of_sample)
             for stage, fractions in enumerate(stages):
                 pairs = list(product(fractions, range(len(of_sample))))
-                step = min(-(-len(samples) * len(pairs) // MAX_VECTORS), len(pairs))
+                step = min(-(-(beside + len(samples)) * len(pairs) // MAX_VECTORS), len(pairs))
                 for fraction, variant in pairs[index % step :: step]:
                     rows[stage].append(self._pyramid.vector(sums.until(variant, fraction)))
                     of_row[stage].append((index, variant))
+        progress("pooling of examples", len(samples), len(samples))
         return [
-            PooledVectors(np.stack(vectors), *np.array(indices).T)
+            PooledVectors(vectors.stacked(), *np.array(indices).T)
             for vectors, indices in zip(rows, of_row, strict=True)
         ]
 
@@ -75,13 +88,39 @@ class Pooling:
     ) -> NDArray[np.float32]:
         """Return the vectors (windows, inputs) of movement that nobody taught, each of its only variant."""
         if not windows:
-            return np.zeros((0, self._pyramid.cells * self.first.units), np.float32)
-        return np.stack(
-            [
-                self._pyramid.vector(_VariantSums(self, window, of_window).until(0, 1.0))
-                for window, of_window in zip(windows, variants, strict=True)
-            ]
-        )
+            inputs = self._pyramid.cells * self.first.units if self.basis is None else self.basis.rank
+            return np.zeros((0, inputs), np.float32)
+        rows = Rows(self.basis)
+        for window, of_window in zip(windows, variants, strict=True):
+            rows.append(self._pyramid.vector(_VariantSums(self, window, of_window).until(0, 1.0)))
+        return rows.stacked()
+
+
+class Rows:
+    """Collects vectors (inputs,), or their coordinates in a basis: then only a few vectors are held at once."""
+
+    def __init__(self, basis: Basis | None) -> None:
+        self._basis = basis
+        self._vectors: list[NDArray[np.float32]] = []
+        self._coordinates: list[NDArray[np.float32]] = []
+
+    def append(self, vector: NDArray[np.float32]) -> None:
+        """Add a vector."""
+        self._vectors.append(vector)
+        if self._basis is not None and len(self._vectors) == CHUNK:
+            self._reduce(self._basis)
+
+    def stacked(self) -> NDArray[np.float32]:
+        """Return all, (n, inputs) or (n, rank)."""
+        if self._basis is None:
+            return np.stack(self._vectors)
+        if self._vectors:
+            self._reduce(self._basis)
+        return np.concatenate(self._coordinates)
+
+    def _reduce(self, basis: Basis) -> None:
+        self._coordinates.append(basis.coordinates(np.stack(self._vectors)))
+        self._vectors.clear()
 
 
 class _VariantSums:

@@ -10,16 +10,20 @@ from numpy.typing import NDArray
 from actum.arrays import Floats
 from actum.som import Som
 from actum_model_trainer.augmentation import Variant
+from actum_model_trainer.gathering import Taught
 from actum_model_trainer.hand_preference import people_prefer_one_hand
-from actum_model_trainer.layers_above import Taught, train_above
+from actum_model_trainer.kept import KeptWindows, pooled_basis
+from actum_model_trainer.layers_above import train_above
 from actum_model_trainer.median_distances import median_quantization_error2
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from som_classifier.first_layer import MAP_INPUTS, FirstMaps, frame_inputs
+from som_classifier.model import Arrays
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 
 MAX_ROWS = 20_000  # per map of the first layer: some 60 for each of its 324 units
+MOST_FRAMES = 400_000  # of variants that these rows are drawn from: each takes a kilobyte meanwhile
 
 
 def train(
@@ -35,13 +39,13 @@ def train(
         TrainingError: fewer than two actions among the samples, or all samples move alike.
     """
     taught = Taught.of(samples, people_prefer_one_hand(samples), preset, seed)
-    every = [variant for of_sample in taught.augmented for variant in of_sample]
-    first = _first_maps(every, preset, taught.rng, progress)
+    first = _first_maps(_some(taught.augmented), preset, taught.rng, progress)
     return train_above(first, taught, background, preset, seed, progress)
 
 
 def update(
     model: PyramidModel,
+    kept: Arrays,
     samples: Sequence[SegmentSample],
     background: Sequence[LabelledStream],
     preset: PyramidPreset,
@@ -51,7 +55,8 @@ def update(
     """Train the layers above a model's maps anew, on samples of the same actions; its maps and its search stay.
 
     So it finds the same segments as before: only what they are called may change, and how like that they are. What the
-    search reads is pooled as the model does, whatever the preset says.
+    search reads is pooled as the model does, whatever the preset says. `kept` is what the model's file keeps of its
+    training.
 
     Raises:
         TrainingError: fewer than two actions among the samples.
@@ -61,7 +66,15 @@ def update(
     taught = Taught.of(samples, known.mirrors, as_known, seed)
     above = train_above(model.first, taught, background, as_known, seed, progress)
     metadata = above.metadata.model_copy(update={"spotting": known.spotting, "updated_from": model.id})
-    return replace(above, heads=model.heads, metadata=metadata)
+    windows = KeptWindows.of(kept)
+    moved = {} if windows is None else windows.moved(pooled_basis(kept), pooled_basis(above.kept)).arrays
+    return replace(above, heads=model.heads, metadata=metadata, kept={**above.kept, **moved})
+
+
+def _some(augmented: Sequence[Sequence[Variant]]) -> list[Variant]:
+    """Return the variants of as many samples, spread evenly, as have about `MOST_FRAMES` frames."""
+    frames = sum(len(of_sample) * len(of_sample[0].measured[0]) for of_sample in augmented)
+    return [variant for of_sample in augmented[:: -(-frames // MOST_FRAMES)] for variant in of_sample]
 
 
 def _first_maps(

@@ -1,7 +1,7 @@
 """Training samples: the labelled segments of recordings, and the streams in which they lie."""
 
 import logging
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -179,19 +179,37 @@ def samples_from(recordings: Sequence[Recording], progress: Progress = silent) -
     """
     segments: list[SegmentSample | Unusable] = []
     streams: list[LabelledStream] = []
+    for samples in each_read(recordings, progress):
+        segments += samples.segments
+        streams += samples.streams
+    return Samples(segments, streams)
+
+
+def each_read(recordings: Sequence[Recording], progress: Progress = silent) -> Iterator[Samples]:
+    """Read the recordings one by one, and yield what each holds.
+
+    Raises:
+        RecordingError: a file is damaged.
+    """
     for done, recording in enumerate(recordings):
         progress("reading recordings", done, len(recordings))
-        for sensor in sorted({*recording.sensors(keys.SEGMENT), *recording.sensors(keys.SKELETON)}):
-            collected = FrameCollector()
-            for _ in replay(collected, classifier_input(recording, sensor)):
-                raise AssertionError("the collector puts nothing")
-            labelled = [(each, each.label) for each in collected.closed if each.label is not None]
-            segments += [_sample(recording, sensor, each, label) for each, label in labelled]
-            streams += [
-                _stream(recording, agent, frames, [each for each in labelled if each[0].agent == agent])
-                for agent, frames in collected.frames.items()
-            ]
+        yield _samples_of(recording)
     progress("reading recordings", len(recordings), len(recordings))
+
+
+def _samples_of(recording: Recording) -> Samples:
+    segments: list[SegmentSample | Unusable] = []
+    streams: list[LabelledStream] = []
+    for sensor in sorted({*recording.sensors(keys.SEGMENT), *recording.sensors(keys.SKELETON)}):
+        collected = FrameCollector()
+        for _ in replay(collected, classifier_input(recording, sensor)):
+            raise AssertionError("the collector puts nothing")
+        labelled = [(each, each.label) for each in collected.closed if each.label is not None]
+        segments += [_sample(recording, sensor, each, label) for each, label in labelled]
+        streams += [
+            _stream(recording, agent, frames, [each for each in labelled if each[0].agent == agent])
+            for agent, frames in collected.frames.items()
+        ]
     return Samples(segments, streams)
 
 

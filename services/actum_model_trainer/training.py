@@ -1,20 +1,31 @@
 """Training of a model of the kind that the preset belongs to."""
 
+import hashlib
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from threadpoolctl import threadpool_limits
 
-from actum_model_trainer import paper_training, pyramid_training
+from actum_model_trainer import adding, paper_training, pyramid_training
 from actum_model_trainer.background import counterexamples, shipped
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.provenance import TrainingError, actions_of
+from actum_model_trainer.provenance import TrainingError, actions_of, digest_of
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.spotting.spotting_training import with_spotting
-from som_classifier.model import Model
-from som_classifier.presets import Preset
+from som_classifier.model import NOTHING_KEPT, Arrays, Model
+from som_classifier.presets import PRESETS, Preset
 
-__all__ = ["SEARCHES", "TRAININGS", "UPDATES", "TrainingError", "train", "train_to_spot", "update"]
+__all__ = [
+    "ADDITIONS",
+    "SEARCHES",
+    "TRAININGS",
+    "UPDATES",
+    "TrainingError",
+    "add_to",
+    "train",
+    "train_to_spot",
+    "update",
+]
 
 
 TRAININGS: dict[str, Callable[[Sequence[SegmentSample], Sequence[LabelledStream], Any, int, Progress], Model]] = {
@@ -24,10 +35,14 @@ TRAININGS: dict[str, Callable[[Sequence[SegmentSample], Sequence[LabelledStream]
 """The training of each kind of model on samples and background, with a preset of that kind and a seed."""
 SEARCHES: dict[str, Callable[[Any, Sequence[LabelledStream], Any, int, Progress], Model]] = {"pyramid": with_spotting}
 """For each kind of model that finds actions without marks: adds the search to a trained model."""
-UPDATES: dict[str, Callable[[Any, Sequence[SegmentSample], Sequence[LabelledStream], Any, int, Progress], Model]] = {
-    "pyramid": pyramid_training.update
-}
+UPDATES: dict[
+    str, Callable[[Any, Arrays, Sequence[SegmentSample], Sequence[LabelledStream], Any, int, Progress], Model]
+] = {"pyramid": pyramid_training.update}
 """For each kind of model whose search can stay as it is: trains what names the segments found."""
+ADDITIONS: dict[
+    str, Callable[[Any, Arrays, Sequence[SegmentSample], Sequence[LabelledStream], str, Any, int, Progress], Model]
+] = {"pyramid": adding.add}
+"""For each kind of model that examples can be added to: adds them, whatever was kept of the training."""
 
 
 def train(
@@ -78,18 +93,84 @@ def update(
     preset: Preset,
     seed: int = 0,
     progress: Progress = silent,
+    kept: Arrays = NOTHING_KEPT,
 ) -> Model:
     """Train a model on samples that include corrections, so that it finds the same segments as before.
 
-    A model of another kind than the preset's, of a kind that cannot be updated, of other actions or without a search is
-    trained anew. The background is that which comes with actum.
+    Where nothing but examples of new actions has come since, these are added to the model. A model of another kind than
+    the preset's, of a kind that cannot be updated, of other actions or without a search is trained anew. The background
+    is that which comes with actum. `kept` is what the model's file keeps of its training.
 
     Raises:
         TrainingError: fewer than two actions among the samples.
     """
+    if new := _added_since(model, kept, samples, streams, preset):
+        holding = {sample.file for sample in new}
+        more = [each for each in streams if each.file in holding]
+        return _added(model, kept, new, more, digest_of(samples), seed, progress)
     updating = UPDATES.get(preset.kind)
     alike = model.metadata.kind == preset.kind and model.labels == actions_of(samples)
     if updating is None or not alike or model.spotting is None:
         return train_to_spot(samples, streams, preset, seed, progress)
     with threadpool_limits(1, user_api="blas"):
-        return updating(model, samples, [*shipped(), *counterexamples(streams)], preset, seed, progress)
+        return updating(model, kept, samples, [*shipped(), *counterexamples(streams)], preset, seed, progress)
+
+
+def add_to(
+    model: Model,
+    kept: Arrays,
+    samples: Sequence[SegmentSample],
+    streams: Sequence[LabelledStream],
+    seed: int = 0,
+    progress: Progress = silent,
+) -> Model:
+    """Add examples of new actions, or more of known ones, to a model without training its maps anew.
+
+    Args:
+        model: that was trained.
+        kept: what its file keeps of its training (`som_classifier.model_loading.kept_in`).
+        samples: the examples to add.
+        streams: in which they lie.
+        seed: of what is drawn.
+        progress: of the training.
+
+    Raises:
+        TrainingError: the model's kind cannot take examples, nothing is kept, or there is no example.
+    """
+    digest = hashlib.sha256(f"{model.metadata.data_digest}{digest_of(samples)}".encode()).hexdigest()
+    return _added(model, kept, samples, streams, digest, seed, progress)
+
+
+def _added(
+    model: Model,
+    kept: Arrays,
+    samples: Sequence[SegmentSample],
+    streams: Sequence[LabelledStream],
+    digest: str,
+    seed: int,
+    progress: Progress,
+) -> Model:
+    """Add examples; the digest is that of all samples, those before and these."""
+    adding_to, preset = ADDITIONS.get(model.metadata.kind), PRESETS.get(model.metadata.preset)
+    if adding_to is None or preset is None:
+        raise TrainingError(
+            f"no action can be added to a model of preset {model.metadata.preset}: train a model from recordings of "
+            "all its actions"
+        )
+    with threadpool_limits(1, user_api="blas"):
+        return adding_to(model, kept, samples, streams, digest, preset, seed, progress)
+
+
+def _added_since(
+    model: Model,
+    kept: Arrays,
+    samples: Sequence[SegmentSample],
+    streams: Sequence[LabelledStream],
+    preset: Preset,
+) -> list[SegmentSample]:
+    """Return the examples of new actions, where all others are those that the model was trained on; else none."""
+    before = [sample for sample in samples if sample.label in model.labels]
+    fits = bool(kept) and model.metadata.preset == preset.name and preset.kind in ADDITIONS
+    if not fits or counterexamples(streams) or digest_of(before) != model.metadata.data_digest:
+        return []
+    return [sample for sample in samples if sample.label not in model.labels]

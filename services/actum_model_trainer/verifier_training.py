@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Indices
-from actum_model_trainer.confidence import averaged_with_prior
-from actum_model_trainer.convolution_training import Convolved, blended
+from actum.arrays import Array
+from actum_model_trainer.confidence import averaged_with_prior, expected_log_errors
+from actum_model_trainer.convolution_training import blended
 from actum_model_trainer.discriminants import Discriminants, FittedStage, fit_discriminants
-from actum_model_trainer.pooling import PooledVectors
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
+from actum_model_trainer.training_data import SampleMeasures, TrainingData
 from som_classifier.presets import Prior, PyramidPreset
 from som_classifier.verifier import Verifier
 
@@ -33,40 +33,33 @@ class Shown:
     people: int
     one_sample_each: bool
 
+    @classmethod
+    def by(cls, measures: SampleMeasures) -> "Shown":
+        """Look at the samples' people."""
+        return cls(measures.everybody, measures.one_sample_each)
 
-def trained_verifier(
-    labelled: FittedStage,
-    pooled: PooledVectors,
-    background: NDArray[np.float32],
-    convolved: Convolved,
-    folds: Indices,
-    usual_log_errors: list[float],
-    shown: Shown,
-    preset: PyramidPreset,
-) -> Verifier:
+
+def trained_verifier(labelled: FittedStage, data: TrainingData, preset: PyramidPreset) -> Verifier:
     """Return a verifier that holds the actions against one another and against the background.
 
     Args:
         labelled: the complete actions, with the scores that name them.
-        pooled: their vectors.
-        background: (m, inputs), vectors of movement that nobody taught.
-        convolved: the features of both.
-        folds: (n,), of the samples.
-        usual_log_errors: for each action.
-        shown: by the samples.
+        data: of the training.
         preset: with hyperparameters and the prior.
     """
-    indicators, of_row = np.eye(labelled.targets.max() + 1)[labelled.targets], folds[pooled.sample_indices]
+    indicators, convolved = np.eye(len(data.labels))[labelled.targets], data.convolved
+    of_row, measures = data.folds[labelled.sample_indices], data.measures
     weight, shrinkage = preset.convolutions.verifier_weight, preset.convolutions.shrinkage
-    maps = fit_discriminants(pooled.vectors, indicators, of_row, preset.shrinkage, background)
+    maps = fit_discriminants(data.stages[-1].vectors, indicators, of_row, preset.shrinkage, data.background)
     convolutions = fit_discriminants(convolved.taught, indicators, of_row, shrinkage, convolved.background)
-    likenesses = Likenesses.of(labelled, blended(maps, convolutions, weight))
+    maps, convolutions = maps.through(data.pooled_basis), convolutions.through(data.convolved_basis)
+    likenesses, shown = Likenesses.of(labelled, blended(maps, convolutions, weight)), Shown.by(measures)
     slope, intercept = verification(likenesses, preset.prior, shown)
     return Verifier(
         (maps.axes / (1 + weight)).astype(np.float32),
         (weight / (1 + weight) * convolved.axes(convolutions)).astype(np.float32),
         ((maps.offsets + weight * convolutions.offsets) / (1 + weight)).astype(np.float32),
-        usual_log_errors,
+        expected_log_errors(measures.log_errors, data.targets, preset.prior),
         slope,
         intercept,
         *least_likenesses(likenesses, preset, shown),

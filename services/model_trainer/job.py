@@ -24,11 +24,12 @@ from actum_examples.take import read_take
 from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.samples import select
+from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.training import TrainingError, train_to_spot, update
 from model_trainer.set_evaluation import evaluate_set
 from som_classifier.model import Model
-from som_classifier.model_loading import ModelError, load_model
+from som_classifier.model_loading import ModelError, kept_in, load_model
 from som_classifier.presets import PRESETS
 
 PRINT_S = 0.1
@@ -78,13 +79,14 @@ def print_line(**fields: Any) -> None:
 def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
     """Train a model on a set, or update one; it lies in the folder afterwards."""
     before = None if arguments.model is None else load_model(arguments.model)
-    samples = samples_from(select([_snapshot(arguments)]), progress)
+    samples = sampled_from(select([_snapshot(arguments)]), progress).samples
     learnt = samples.usable, samples.streams
     if before is None:
         model = train_to_spot(*learnt, PRESETS[arguments.preset], arguments.seed, progress)
     else:
         preset = PRESETS.get(before.metadata.preset, PRESETS[arguments.preset])
-        model = update(before, *learnt, preset, arguments.seed, progress)
+        assert arguments.model is not None
+        model = update(before, *learnt, preset, arguments.seed, progress, kept_in(arguments.model))
     model.save(arguments.folder / MODEL)
     answers = model.metadata.held_out_answers
     right = sum(done == answered for done, answered in answers)

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -20,6 +21,9 @@ from som_classifier.frames import Frame
 from som_classifier.spotting.spotted import Spotter, SpottingMetadata, SpottingOptions
 
 Arrays = Mapping[str, NDArray[Any]]
+KEPT = "kept_"
+"""How the names of arrays begin that a model file keeps for training alone."""
+NOTHING_KEPT: Arrays = MappingProxyType({})
 MOST_SAMPLES = 1_000_000
 """Most samples that a file may count in one place of its confusion matrix, each of which is listed."""
 
@@ -106,10 +110,13 @@ class Model(ABC):
 
     Attributes:
         metadata: what the file holds beside the weights.
+        kept: what the file keeps of the training, so that actions can be added; no part of the model's id. A model
+            that was loaded to classify has none.
         min_frames: the fewest valid frames for which it gives an answer.
     """
 
     metadata: ModelMetadata
+    kept: Arrays = NOTHING_KEPT
     min_frames: ClassVar[int] = 3
 
     @property
@@ -191,7 +198,7 @@ class Model(ABC):
         Raises:
             OSError: the file cannot be written.
         """
-        contents: dict[str, NDArray[Any]] = {"metadata": np.array(self._metadata_json()), **self.arrays}
+        contents: dict[str, NDArray[Any]] = {"metadata": np.array(self._metadata_json()), **self.arrays, **self.kept}
         with replaced(path) as file:
             np.savez(file, allow_pickle=False, **contents)
 

@@ -17,7 +17,7 @@ from pydantic import ValidationError
 from actum import __version__
 from actum.node import Counters
 from actum.states import State
-from som_classifier.model import Arrays, Model
+from som_classifier.model import KEPT, Arrays, Model
 from som_classifier.paper_model import PaperModel
 from som_classifier.pyramid_model import PyramidModel
 
@@ -99,7 +99,23 @@ def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
         raise ModelError(path, "the file is not a model of actum, or it is damaged")
     _refuse_bomb(stored)
     with np.load(stored, allow_pickle=False) as file:
-        return str(file["metadata"]), {name: file[name] for name in file.files if name != "metadata"}
+        names = [name for name in file.files if name != "metadata" and not name.startswith(KEPT)]
+        return str(file["metadata"]), {name: file[name] for name in names}
+
+
+def kept_in(path: Path) -> Arrays:
+    """Return what a model file keeps for training alone, see `Model.kept`.
+
+    Raises:
+        ModelError: the file is missing, foreign or damaged.
+    """
+    try:
+        with path.open("rb") as stored:
+            _refuse_bomb(stored)
+            with np.load(stored, allow_pickle=False) as file:
+                return {name: file[name] for name in file.files if name.startswith(KEPT)}
+    except UNREADABLE as error:
+        raise ModelError(path, f"the file is not a model of actum, or it is damaged ({_problem(error)})") from None
 
 
 def _refuse_bomb(stored: IO[bytes]) -> None:

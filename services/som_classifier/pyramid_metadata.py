@@ -38,7 +38,8 @@ class PyramidMetadata(ModelMetadata):
         most_movement_above: how far that of a segment may lie above it, for legs and trunk.
         least_movement_m: how far everybody moves who does one of the actions, at least.
         spotting: of the search for actions without marks; None where the model was not trained for that.
-        updated_from: the id of the model whose maps and search these are; None where they are of this training.
+        updated_from: the id of the model whose maps these are, and whose search but for actions added since; None where
+            they are of this training.
     """
 
     kind: Literal["pyramid"] = "pyramid"

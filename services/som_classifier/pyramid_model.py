@@ -1,7 +1,7 @@
 """The default recogniser: posture, velocity and arm maps, a temporal pyramid, linear discriminants, an action map."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from operator import mul
 from typing import Any
@@ -57,6 +57,7 @@ class PyramidModel(Model):
         action_map: the second layer, a map of the discriminants' scores.
         layer3: one neuron per action on the second layer's activity.
         heads: of the search for actions without marks; None where the model was not trained for that.
+        kept: what the layers above the maps were trained on, for training alone.
     """
 
     first: FirstMaps
@@ -68,6 +69,7 @@ class PyramidModel(Model):
     layer3: SupervisedLayer
     metadata: PyramidMetadata
     heads: CompletenessHeads | None = None
+    kept: Arrays = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if problem := self.metadata.problem() or self._number_problem() or self._shape_problem():

@@ -196,6 +196,20 @@ def test_training_holds_the_examples_against_the_background_that_is_named(
     assert str(nothing) in refused("train", examples, "-o", tmp_path / "m.npz", "--background", nothing)
 
 
+def test_examples_are_added_to_a_model_file(examples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(SEARCHES, "pyramid")
+    before, after = tmp_path / "before.npz", tmp_path / "after.npz"
+    assert invoke("train", examples, "-o", before, "--jobs", "1").exit_code == 0
+    added = invoke("train", examples, "-o", after, "--add-to", before)
+    assert added.exit_code == 0, added.output
+    known = load_model(before)
+    assert load_model(after).metadata.samples == 2 * known.metadata.samples
+    assert f"{2 * known.metadata.samples} samples of {len(known.labels)} actions" in " ".join(added.output.split())
+    said = refused("train", examples, "-o", after, "--add-to", before, "--background", "none")
+    assert "leave out --background and --set" in " ".join(said.split())
+    assert str(tmp_path / "no.npz") in refused("train", examples, "-o", after, "--add-to", tmp_path / "no.npz")
+
+
 def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:
     model = tmp_path / "m.npz"
     assert invoke("train", examples, "-o", model, "--preset", "paper").exit_code == 0

@@ -43,7 +43,8 @@ def assert_fitted(
     repeated = [sample for sample in samples for _ in fractions]
     vectors = np.stack([pooled(model, sample, fraction) for sample in samples for fraction in fractions])
     indicators = np.eye(len(model.labels))[[model.labels.index(sample.label) for sample in repeated]]
-    fitted = fit_discriminants(vectors, indicators, folds_of(repeated), PLAIN.shrinkage)
+    folds = folds_of([sample.person for sample in repeated], [sample.label for sample in repeated])
+    fitted = fit_discriminants(vectors, indicators, folds, PLAIN.shrinkage)
     scores = vectors @ model.stages.axes[0] + model.stages.offsets[0]
     np.testing.assert_allclose(scores, fitted.training_scores, atol=atol)
     return fitted

@@ -85,6 +85,8 @@ def test_fewer_than_two_actions_are_refused(samples: list[SegmentSample], preset
         train([sample for sample in samples if sample.label in known], preset)
 
 
+EXAMPLES = 18
+"""Of three people, each of whom does three actions twice."""
 STAGES_OF_TRAINING = [
     (
         TINY,
@@ -92,6 +94,7 @@ STAGES_OF_TRAINING = [
             ("map of postures", TINY.unit_epochs),
             ("map of velocities", TINY.unit_epochs),
             ("map of arms", TINY.unit_epochs),
+            ("pooling of examples", EXAMPLES),
             ("discriminant axes", len(TINY.stages)),
             ("map of actions", TINY.concept_epochs),
             ("neurons", TINY.epochs),

@@ -27,11 +27,13 @@ from actum_model_trainer.continuous_cross_validation import found_without_each, 
 from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import evaluate
 from actum_model_trainer.report import report
-from actum_model_trainer.samples import LabelledStream, samples_from, select
-from actum_model_trainer.training import TrainingError, train_to_spot
+from actum_model_trainer.samples import LabelledStream, Samples, samples_from, select
+from actum_model_trainer.sampling import sampled_from
+from actum_model_trainer.side_by_side import at_most
+from actum_model_trainer.training import TrainingError, add_to, train_to_spot
 from som_classifier.attention import ATTENTIONS, MOVING
 from som_classifier.model import Model
-from som_classifier.model_loading import ModelError, load_model
+from som_classifier.model_loading import ModelError, kept_in, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 from som_classifier.segmentation import Segmentation
 from som_classifier.settings import Settings
@@ -62,9 +64,17 @@ PRESETS_SHOWN = f"<{'|'.join(PRESETS)}>"
 PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HELP)]
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
 SeedOption = Annotated[int, typer.Option(min=0, help=SEED_HELP)]
+JOBS_HELP = (
+    "parts of a training that run at the same time; each takes memory. Default: the number of processors. The model is "
+    "the same with any number"
+)
+ADD_TO_HELP = (
+    "add the recorded examples to this model, which keeps its maps, instead of training a new one. The recordings may "
+    "show new actions or known ones. Takes about a second"
+)
 
 
-def train_command(
+def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     files: Files,
     output: Annotated[Path, typer.Option("-o", "--output", help="the model file to write (.npz)")],
     preset: PresetOption = DEFAULT.name,
@@ -75,26 +85,49 @@ def train_command(
     background: Annotated[
         list[str] | None, typer.Option(metavar=f"<{SHIPPED}|{NONE}|FILE>", help=BACKGROUND_HELP)
     ] = None,
+    add_to_model: Annotated[Path | None, typer.Option("--add-to", metavar="MODEL", help=ADD_TO_HELP)] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help=JOBS_HELP)] = None,
 ) -> None:
     """Train a model on labelled recordings, and write it to a file for 'actum up --model'."""
     began_s = time.monotonic()
     _refuse_place(output, ".npz")
     chosen_preset = preset_named(preset, settings or ())
+    if add_to_model is not None and (background or settings):
+        fail("--add-to keeps the model's background and preset: leave out --background and --set")
     recordings = chosen(files, person, with_excluded)
-    with failing_on(RecordingError, TrainingError, OSError):
+    with failing_on(RecordingError, TrainingError, ModelError, OSError), at_most(jobs):
+        samples = _read(recordings)
         with bars() as progress:
-            samples = samples_from(recordings, progress)
-        for unusable in samples.unusable:
-            say(f"{unusable.segment_id} of {unusable.file} was not used: {unusable.reason}")
-        tell_unread(recordings)
-        with bars() as progress:
-            beside = _background(background or [SHIPPED])
-            model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress, beside)
+            if add_to_model is None:
+                beside = _background(background or [SHIPPED])
+                model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress, beside)
+            else:
+                known, kept = load_model(add_to_model), kept_in(add_to_model)
+                model = add_to(known, kept, samples.usable, samples.streams, seed, progress)
         model.save(output)
     say(
-        f"model {model.id}: {len(samples.usable)} samples of {len(model.labels)} actions, preset {preset}, "
-        f"{time.monotonic() - began_s:.1f} s, written to {output}"
+        f"model {model.id}: {model.metadata.samples} samples of {len(model.labels)} actions, preset "
+        f"{model.metadata.preset}, {time.monotonic() - began_s:.1f} s, written to {output}"
     )
+    if add_to_model is None:
+        _advise(samples, model)
+
+
+def _read(recordings: Sequence[Recording]) -> Samples:
+    """Read the examples, and print which cannot be used."""
+    with bars() as progress:
+        sampling = sampled_from(recordings, progress)
+    samples = sampling.samples
+    if remark := sampling.remark:
+        say(remark)
+    for unusable in samples.unusable:
+        say(f"{unusable.segment_id} of {unusable.file} was not used: {unusable.reason}")
+    tell_unread(recordings)
+    return samples
+
+
+def _advise(samples: Samples, model: Model) -> None:
+    """Print what to record next."""
     contents = Contents.of(samples.usable, model.background_s or 0.0)
     for sentence in advice(contents, model.metadata.held_out_answers):
         say(sentence, style="yellow")
@@ -148,6 +181,7 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help=ONLY_LEFT_OUT + SEED_HELP)] = 0,
     with_excluded: AllOption = False,
+    jobs: Annotated[int | None, typer.Option(min=1, help=ONLY_LEFT_OUT + JOBS_HELP)] = None,
 ) -> None:
     """Test how well actions are recognised in labelled recordings, and print the scores.
 
@@ -166,10 +200,11 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         fail(f"{flag_of(next(iter(given)))} works only together with --continuous: add --continuous")
     recordings = chosen(files if by_person else files[1:], person, with_excluded)
     what = model, recordings, preset_named(preset, settings or ()), seed, json_file
-    if continuous:
-        _evaluate_continuously(*what, segmentation_of(given))
-    else:
-        _evaluate_segments(*what)
+    with at_most(jobs):
+        if continuous:
+            _evaluate_continuously(*what, segmentation_of(given))
+        else:
+            _evaluate_segments(*what)
 
 
 def _evaluate_segments(

@@ -103,6 +103,16 @@ class Found:
             (*self.detections, *other.detections), (*self.truths, *other.truths), (*self.seen, *other.seen)
         )  # fmt: skip
 
+    @classmethod
+    def of_all(cls, parts: Iterable["Found"]) -> "Found":
+        """Put the parts together."""
+        listed = list(parts)
+        return cls(
+            [each for part in listed for each in part.detections],
+            [each for part in listed for each in part.truths],
+            [each for part in listed for each in part.seen],
+        )
+
     def as_json(self) -> dict[str, Any]:
         """Return plain values for JSON."""
         return {

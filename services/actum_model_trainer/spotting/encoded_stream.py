@@ -23,7 +23,7 @@ class EncodedStream:
 
     def __init__(self, model: PyramidModel, stream: LabelledStream, variant: Variant | None = None) -> None:
         self._pyramid, self._mirrors = model.pyramid, model.metadata.mirrors
-        seen = variant or Variant(stream.postures, stream.velocities)
+        seen = variant or Variant((stream.postures, stream.velocities))
         sides = [seen, seen.mirrored] if self._mirrors else [seen]
         steps_um = np.rint(stream.motion * UM_PER_M).astype(np.int64).sum(axis=1)
         travelled_um = np.concatenate([[0], np.cumsum(steps_um)])

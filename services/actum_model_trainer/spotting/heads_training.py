@@ -2,14 +2,15 @@
 
 from collections.abc import Callable, Sequence
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
 from actum_model_trainer.augmentation import Variant, augmentation_for, varied
-from actum_model_trainer.discriminants import dual_form
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.ridge import dual_form
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.spotting.common_head import with_common
@@ -57,7 +58,25 @@ class Folds:
         return parts
 
 
-def trained_heads(
+class WindowRows(NamedTuple):
+    """Windows as the heads are trained on them.
+
+    Attributes:
+        vectors: (n, inputs), pooled.
+        completeness: (n, actions), what the heads are to answer.
+        folds: (n,).
+    """
+
+    vectors: NDArray[np.float32]
+    completeness: Array
+    folds: Indices
+
+    def heads(self, fold_count: int, shrinkage: float) -> FoldedHeads:
+        """Train the actions' heads and the common one."""
+        return fit_heads(self.vectors, with_common(self.completeness), self.folds, fold_count, shrinkage)
+
+
+def window_rows(
     model: PyramidModel,
     streams: Sequence[LabelledStream],
     windows: Sequence[TrainingWindows],
@@ -65,28 +84,22 @@ def trained_heads(
     preset: PyramidPreset,
     rng: np.random.Generator,
     progress: Progress,
-) -> FoldedHeads:
-    """Train the actions' heads and the common one on about `most_windows` of the streams' windows.
-
-    Few windows are shown in several variants.
-    """
+) -> WindowRows:
+    """Pool about `most_windows` of the streams' windows. Few windows are shown in several variants."""
     copies = preset.spotting.most_windows / max(sum(len(each.frames) for each in windows), 1)
     augmentation = augmentation_for([stream.person for stream in streams], preset)
     vectors, completeness, of_fold = [], [], []
     for done, (stream, each) in enumerate(zip(streams, windows, strict=True)):
         progress("windows of streams", done, len(streams))
-        variants = list(varied(Variant(stream.postures, stream.velocities), stream.depth_inferred, augmentation, rng))
+        variants = list(varied(Variant((stream.postures, stream.velocities)), stream.depth_inferred, augmentation, rng))
         often = int(copies) + (rng.random(len(each.frames)) < copies % 1)
         kept = np.repeat(np.arange(len(each.frames)), np.minimum(often, len(variants)))
-        vectors.append(
-            _vectors(model, stream, variants, each.frames[kept], rng.integers(len(variants), size=len(kept)))
-        )
+        drawn = rng.integers(len(variants), size=len(kept))
+        vectors.append(_vectors(model, stream, variants, each.frames[kept], drawn))
         completeness.append(each.completeness[kept])
         of_fold.append(folds.of(stream, each.frames[kept]))
     progress("windows of streams", len(streams), len(streams))
-    folded, shrinkage = np.concatenate(of_fold), preset.spotting.shrinkage
-    targets = with_common(np.concatenate(completeness))
-    return fit_heads(np.concatenate(vectors), targets, folded, folds.count, shrinkage)
+    return WindowRows(np.concatenate(vectors), np.concatenate(completeness), np.concatenate(of_fold))
 
 
 def _vectors(
@@ -123,7 +136,8 @@ def fit_heads(
         kept = np.flatnonzero(folds != fold)
         kept_mean = completeness[kept].mean(axis=0) if len(kept) else np.zeros(completeness.shape[1])
         dual = np.zeros(completeness.shape, np.float32)
-        dual[kept] = np.linalg.solve(products[np.ix_(kept, kept)], completeness[kept] - kept_mean)
+        inner = products if fold is None else products[np.ix_(kept, kept)]
+        dual[kept] = np.linalg.solve(inner, completeness[kept] - kept_mean)
         axes = centred.T @ dual
         return CompletenessHeads(axes, (kept_mean - mean @ axes).astype(np.float32))
 

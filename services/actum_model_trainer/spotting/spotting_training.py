@@ -14,10 +14,11 @@ from actum.node import SECOND_NS
 from actum_model_trainer.confidence import averaged_with_prior
 from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import background_min
+from actum_model_trainer.kept import KeptWindows, pooled_basis
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.common_head import mixed, mixed_heads
-from actum_model_trainer.spotting.heads_training import Folds, trained_heads
+from actum_model_trainer.spotting.heads_training import Folds, window_rows
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.spotting.scanning import ScannedStream, scanned
 from actum_model_trainer.spotting.threshold_choice import ThresholdChoice, chosen_threshold, false_alarms
@@ -47,31 +48,40 @@ def with_spotting(
     people show little of how sure the search has to be of others: their threshold is averaged with the prior's.
     """
     search, rng = preset.spotting, np.random.default_rng(seed)
-    usable = [each for each in streams if len(each.stamps_ns) >= FEWEST_FRAMES and not each.is_counterexample]
-    untuned = _untuned(usable, model.labels, search)
-    windows = [training_windows(each, model.labels, np.array(untuned.window_durations_s), rng) for each in usable]
+    usable = usable_streams(streams)
+    before = untuned(usable, model.labels, search)
+    windows = [training_windows(each, model.labels, np.array(before.window_durations_s), rng) for each in usable]
     if not any(each.completeness.any() for each in windows):
         return model
     folds = Folds(usable, search.folds)
     few = min(search.most_windows, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
     less_varied = replace(preset, spotting=replace(search, most_windows=few))
-    first = trained_heads(model, usable, windows, folds, less_varied, rng, progress)
-    coarse = untuned.model_copy(update={"interval_s": COARSE * search.interval_s})
+    first = window_rows(model, usable, windows, folds, less_varied, rng, progress).heads(folds.count, search.shrinkage)
+    coarse = before.model_copy(update={"interval_s": COARSE * search.interval_s})
     answered = _mixed(scanned(model, usable, first, folds, coarse, progress), search.common_shares[0])
-    searching = SpottingModel(first.without[0], untuned)
+    searching = SpottingModel(first.without[0], before)
     alarms = false_alarms(answered, searching, model.labels, search.false_alarm_threshold)
     windows = [with_false_alarms(*each, rng) for each in zip(usable, windows, alarms, strict=True)]
-    heads = trained_heads(model, usable, windows, folds, preset, rng, progress)
-    answered = scanned(model, usable, heads, folds, untuned, progress)
+    rows = window_rows(model, usable, windows, folds, preset, rng, progress)
+    coordinates, completeness = pooled_basis(model.kept).coordinates(rows.vectors), rows.completeness
+    heads = rows.heads(folds.count, search.shrinkage)
+    del rows
+    answered = scanned(model, usable, heads, folds, before, progress)
     if not any(len(each.windows) for each in answered):
         return model
-    share, choice = _chosen(answered, SpottingModel(heads.all, untuned), model.labels, search)
+    share, choice = _chosen(answered, SpottingModel(heads.all, before), model.labels, search)
     probability = _probability(_mixed(answered, share), model.labels)
     people = len({stream.person for stream in usable if stream.segments})
     threshold = float(averaged_with_prior(choice.threshold, preset.prior.threshold, preset.prior, people))
-    learned = untuned.model_copy(update=choice.stored | {"threshold": threshold, "probability": probability})
+    learned = before.model_copy(update=choice.stored | {"threshold": threshold, "probability": probability})
     metadata = model.metadata.model_copy(update={"spotting": learned})
-    return replace(model, heads=mixed_heads(heads.all, share), metadata=metadata)
+    kept = {**model.kept, **KeptWindows(coordinates, completeness, share).arrays}
+    return replace(model, heads=mixed_heads(heads.all, share), metadata=metadata, kept=kept)
+
+
+def usable_streams(streams: Sequence[LabelledStream]) -> list[LabelledStream]:
+    """Return the streams that the search learns from: not those of counterexamples, nor those of a few frames."""
+    return [each for each in streams if len(each.stamps_ns) >= FEWEST_FRAMES and not each.is_counterexample]
 
 
 def _chosen(
@@ -89,12 +99,12 @@ def _mixed(answered: Sequence[ScannedStream], share: float) -> list[ScannedStrea
     return [replace(each, completeness=mixed(each.completeness, share)) for each in answered]
 
 
-def _untuned(
+def untuned(
     streams: Sequence[LabelledStream], labels: Sequence[str], search: SpottingPreset
 ) -> PyramidSpottingMetadata:
     """Return the metadata before a threshold is chosen."""
     durations_s, log_means, log_sds = _durations(streams, labels, search)
-    marked = sum((stream.marked for stream in streams), Found())
+    marked = Found.of_all(stream.marked for stream in streams)
     return PyramidSpottingMetadata(
         interval_s=search.interval_s,
         lag_s=search.lag_s,

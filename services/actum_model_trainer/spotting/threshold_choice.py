@@ -113,7 +113,7 @@ def found(judged: Sequence[Judged], learned: SpottingModel, labels: Sequence[str
         for each in judged
         for start_ns, end_ns, decided_ns, action in each.decided(learned.decoder(), threshold)
     ]
-    return replace(sum((each.stream.marked for each in judged), Found()), detections=detections)
+    return replace(Found.of_all(each.stream.marked for each in judged), detections=detections)
 
 
 def false_alarms(

@@ -94,11 +94,14 @@ def true_completeness(stream: LabelledStream, frames: Indices, labels: Sequence[
     """Return how complete each action is at most within windows of these frames (n, 2), shape (n, actions)."""
     starts_ns, ends_ns = stream.stamps_ns[frames[:, 0]], stream.stamps_ns[frames[:, 1]]
     completeness = np.zeros((len(frames), len(labels)))
+    by_end, longest_ns = np.argsort(ends_ns, kind="stable"), int((ends_ns - starts_ns).max(initial=0))
     for start_ns, end_ns, label in stream.segments:
         if label in labels:
+            bounds = np.searchsorted(ends_ns, (start_ns, end_ns + longest_ns), sorter=by_end)
+            near = by_end[slice(*bounds.tolist())]  # no other window overlaps the segment
+            iou = overlap_ratio(starts_ns[near], ends_ns[near], start_ns, end_ns)
             column = completeness[:, labels.index(label)]
-            iou = overlap_ratio(starts_ns, ends_ns, start_ns, end_ns)
-            np.maximum(column, completeness_of_iou(iou), out=column)
+            column[near] = np.maximum(column[near], completeness_of_iou(iou))
     return completeness
 
 

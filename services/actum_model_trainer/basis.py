@@ -1,0 +1,83 @@
+"""A few directions in which nearly all of what training vectors differ lies: vectors as coordinates along them.
+
+Ridge regression on coordinates costs a fraction of that on vectors, and coordinates of a whole training fit into a
+model file, so that actions can be added to it.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats32 = NDArray[np.float32]
+
+LANDMARKS = 2
+"""Vectors that each direction is found from: more show the directions hardly better, and n vectors cost n³."""
+SMALLEST_SHARE = 1e-6
+"""Share of the landmarks' largest variance below which a direction is rounding error."""
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Orthonormal directions, and where they start.
+
+    Attributes:
+        mean: (inputs,).
+        directions: (inputs, rank), in falling order of what the vectors differ in them.
+    """
+
+    mean: Floats32
+    directions: Floats32
+
+    @property
+    def rank(self) -> int:
+        """How many directions there are."""
+        return int(self.directions.shape[1])
+
+    @classmethod
+    def of(cls, vectors: Floats32, rank: int) -> "Basis":
+        """Find the principal directions of vectors (n, inputs), at most `rank`."""
+        landmarks = _spread(vectors, rank)
+        mean = landmarks.mean(axis=0, dtype=np.float64).astype(np.float32)
+        return cls(mean, _principal(landmarks - mean, rank))
+
+    def extended(self, vectors: Floats32, most: int) -> "Basis":
+        """Append the principal directions of what vectors (n, inputs) have beside these, at most so many."""
+        centred = _spread(vectors, most) - self.mean
+        beside = centred - (centred @ self.directions) @ self.directions.T
+        return Basis(self.mean, np.hstack([self.directions, _principal(beside, most)]))
+
+    def first(self, rank: int) -> "Basis":
+        """Return the first directions alone."""
+        return Basis(self.mean, self.directions[:, :rank])
+
+    def coordinates(self, vectors: Floats32) -> Floats32:
+        """Return the coordinates (n, rank) of vectors (n, inputs)."""
+        return (vectors @ self.directions - self.mean @ self.directions).astype(np.float32)
+
+    def moved(self, coordinates: Floats32, to: "Basis") -> Floats32:
+        """Return coordinates (n, rank) as coordinates in another basis."""
+        start = to.coordinates(self.mean[None])
+        return (coordinates @ (self.directions.T @ to.directions) + start).astype(np.float32)
+
+    def axes(self, of_coordinates: Floats32) -> Floats32:
+        """Return axes for vectors (inputs, actions) of axes for their coordinates (rank, actions)."""
+        return (self.directions @ of_coordinates).astype(np.float32)
+
+    def offsets(self, of_coordinates: Floats32, axes: Floats32) -> Floats32:
+        """Return the offsets (actions,) that go with axes for vectors, of those that go with coordinates."""
+        return (of_coordinates - self.mean @ axes).astype(np.float32)
+
+
+def _spread(vectors: Floats32, rank: int) -> Floats32:
+    """Return some of the vectors, spread evenly, to find so many directions from."""
+    return vectors[np.linspace(0, len(vectors) - 1, min(len(vectors), LANDMARKS * rank)).round().astype(np.intp)]
+
+
+def _principal(centred: NDArray[np.floating[Any]], most: int) -> Floats32:
+    """Return the principal directions of centred vectors (n, inputs), at most so many, (inputs, directions)."""
+    variances, combinations = np.linalg.eigh((centred @ centred.T).astype(np.float64))
+    kept = np.flatnonzero(variances > SMALLEST_SHARE * variances[-1])[::-1][:most]
+    directions: Floats32 = centred.T @ (combinations[:, kept] / np.sqrt(variances[kept])).astype(np.float32)
+    return directions

@@ -1,0 +1,115 @@
+"""Gathers what the layers above the first maps are trained on: pools, convolves and measures samples and background."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from actum.arrays import Array, Floats
+from actum_model_trainer.augmentation import Variant, augmentation_for, variants
+from actum_model_trainer.background import negatives_of
+from actum_model_trainer.basis import Basis
+from actum_model_trainer.convolution_training import Convolved
+from actum_model_trainer.pooling import MAX_VECTORS, PooledVectors, Pooling
+from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import actions_of
+from actum_model_trainer.samples import LabelledStream, SegmentSample
+from actum_model_trainer.training_data import SampleMeasures, TrainingData, duration_s
+from som_classifier.first_layer import FirstMaps
+from som_classifier.presets import PyramidPreset
+from som_classifier.pyramid import Pyramid
+
+Strange = tuple[Sequence[SegmentSample], Sequence[Sequence[Variant]]]
+"""Windows of movement that nobody taught, and each as the classifier reads it, its only variant."""
+MANY_DIRECTIONS = 1024
+"""Directions in which the vectors of many samples are known: at least 99.7 % of their variance lies in them."""
+
+
+@dataclass(frozen=True, eq=False)
+class Taught:
+    """The samples of a training, and what is drawn of them.
+
+    Attributes:
+        samples: as measured.
+        mirrors: whether an action of the left arm is read as its mirror image.
+        augmented: the variants of each sample, the one as measured first.
+        rng: as it is after the variants were drawn.
+    """
+
+    samples: Sequence[SegmentSample]
+    mirrors: bool
+    augmented: Sequence[Sequence[Variant]]
+    rng: np.random.Generator
+
+    @classmethod
+    def of(cls, samples: Sequence[SegmentSample], mirrors: bool, preset: PyramidPreset, seed: int) -> "Taught":
+        """Draw the variants.
+
+        Raises:
+            TrainingError: fewer than two actions among the samples.
+        """
+        actions_of(samples)
+        rng = np.random.default_rng(seed)
+        augmentation = augmentation_for([sample.person for sample in samples], preset)
+        augmented = [list(variants(sample, augmentation, mirrors, rng)) for sample in samples]
+        return cls(samples, mirrors, augmented, rng)
+
+    @property
+    def measured(self) -> list[Floats]:
+        """The postures of each sample as measured."""
+        return [of_sample[0].postures for of_sample in self.augmented]
+
+
+def gathered(
+    first: FirstMaps,
+    taught: Taught,
+    background: Sequence[LabelledStream],
+    preset: PyramidPreset,
+    seed: int,
+    progress: Progress,
+) -> TrainingData:
+    """Pool, convolve and measure the samples and the background, of many samples as coordinates."""
+    pooling = Pooling(first, Pyramid(preset.levels, preset.overlap), taught.mirrors)
+    if len(taught.samples) > MAX_VECTORS:
+        pooling.basis = _basis_of_some(pooling, taught, preset)
+    pooled = pooling.vectors(taught.samples, taught.augmented, preset.stages, progress=progress)
+    strange = _background(background, taught.samples, preset, taught.mirrors, seed)
+    convolved, basis = _convolved(taught.augmented, pooled[-1], strange, preset, seed), None
+    if pooling.basis is not None:
+        basis = Basis.of(convolved.taught, MANY_DIRECTIONS)
+        convolved = convolved.in_basis(basis)
+    measures = SampleMeasures.of(taught.samples, first, taught.measured)
+    return TrainingData(measures, pooled, pooling.of_background(*strange), convolved, pooling.basis, basis)
+
+
+def _basis_of_some(pooling: Pooling, taught: Taught, preset: PyramidPreset) -> Basis:
+    """Find the directions of all stages' vectors from samples that are spread evenly."""
+    every = -(-len(taught.samples) * len(preset.stages) // (2 * MANY_DIRECTIONS))
+    some, beside = taught.samples[::every], len(taught.samples)
+    landmarks = pooling.vectors(some, taught.augmented[::every], preset.stages, beside)
+    return Basis.of(np.concatenate([stage.vectors for stage in landmarks]), MANY_DIRECTIONS)
+
+
+def _background(
+    streams: Sequence[LabelledStream], samples: Sequence[SegmentSample], preset: PyramidPreset, mirrors: bool, seed: int
+) -> Strange:
+    """Draw the background's windows, each read as the classifier reads it."""
+    rng = np.random.default_rng(seed)
+    durations_s = np.array([duration_s(sample) for sample in samples])
+    windows = negatives_of(streams, durations_s, preset.background, rng)
+    return windows, [[next(variants(window, preset, mirrors, rng))] for window in windows]
+
+
+def _convolved(
+    augmented: Sequence[Sequence[Variant]], pooled: PooledVectors, strange: Strange, preset: PyramidPreset, seed: int
+) -> Convolved:
+    """Convolve the same variants that are pooled, and the background."""
+    beside = [variant.postures for (variant,) in strange[1]]
+    taught = postures_of(augmented, pooled)
+    return Convolved.of(taught, beside, preset.convolutions.biases, np.random.default_rng(seed))
+
+
+def postures_of(augmented: Sequence[Sequence[Variant]], pooled: PooledVectors) -> list[Array]:
+    """Return the postures of the variants that were pooled, by vector."""
+    rows = zip(pooled.sample_indices.tolist(), pooled.variant_indices.tolist(), strict=True)
+    return [augmented[sample][variant].postures for sample, variant in rows]

@@ -1,0 +1,180 @@
+"""Ridge regression of indicators on vectors, and the scores that it gives to rows left out, without fitting it anew.
+
+Scores = vectors · axes + offsets minimise the squared error + penalty × ‖axes‖². There are two forms, which give the
+same up to rounding: the dual one for fewer vectors than inputs, the primal one for more. Neither centres the vectors
+anew where rows are left out.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.arrays import Array, Floats, Indices
+
+SMALLEST_LENGTH2 = 1e-9
+"""Squared length of vectors: the penalty must not be 0 where all are the same."""
+
+
+class Ridge(Protocol):
+    """A fitted regression of indicators (n, actions) on vectors (n, inputs)."""
+
+    @property
+    def axes(self) -> NDArray[np.float32]:
+        """The axes, (inputs, actions)."""
+        ...
+
+    @property
+    def offsets(self) -> NDArray[np.float32]:
+        """The offsets, (actions,)."""
+        ...
+
+    @property
+    def scores(self) -> Array:
+        """The scores of all rows, (n, actions)."""
+        ...
+
+    def held_out(self, rows: Indices) -> Array:
+        """Return the scores (rows, actions) by a regression that was fitted to all other rows."""
+        ...
+
+    def each_left_out(self, count: int) -> Array:
+        """Return the scores of the rows from `count` on, each by a regression that was fitted to all others."""
+        ...
+
+
+def ridge(vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> Ridge:
+    """Fit in the form that costs less.
+
+    Args:
+        vectors: (n, inputs).
+        indicators: (n, actions).
+        shrinkage: the penalty, in units of the mean squared length of the centred vectors.
+    """
+    form = DualRidge if len(vectors) <= vectors.shape[1] else PrimalRidge
+    return form(vectors, indicators, shrinkage)
+
+
+def dual_form(
+    vectors: NDArray[np.float32], shrinkage: float
+) -> tuple[NDArray[np.float32], NDArray[np.float32], Array, float]:
+    """Return the mean (inputs,) of vectors (n, inputs), the centred vectors, their inner products (n, n), the penalty.
+
+    The penalty is `shrinkage` times the mean squared length of the centred vectors.
+    """
+    mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
+    centred = vectors - mean
+    products = (centred @ centred.T).astype(np.float64)
+    return mean, centred, products, shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
+
+
+class DualRidge:
+    """The axes are sought in the span of the vectors, so that one inverse of their inner products serves all folds."""
+
+    def __init__(self, vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> None:
+        mean, centred, products, penalty = dual_form(vectors, shrinkage)
+        self._indicators = indicators
+        self._inverse: Floats = np.linalg.inv(products + penalty * np.eye(len(products)))
+        intercept: Array = indicators.mean(axis=0)
+        dual = self._inverse @ (indicators - intercept)
+        self.axes: NDArray[np.float32] = centred.T @ dual.astype(np.float32)
+        self.offsets: NDArray[np.float32] = (intercept - mean @ self.axes).astype(np.float32)
+        self.scores: Array = products @ dual + intercept
+
+    def held_out(self, rows: Indices) -> Array:
+        """Return the scores (rows, actions) by a regression that was fitted to all other rows.
+
+        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted.
+        """
+        fitted = np.delete(np.arange(len(self._indicators)), rows)
+        intercept: Array = self._indicators[fitted].mean(axis=0)
+        product = self._inverse[np.ix_(rows, fitted)] @ (self._indicators[fitted] - intercept)
+        scores: Array = intercept - np.linalg.solve(self._inverse[np.ix_(rows, rows)], product)
+        return scores
+
+    def each_left_out(self, count: int) -> Array:
+        """Return the scores of the rows from `count` on, each by a regression that was fitted to all others.
+
+        By the leave-one-out formula of ridge regression. The intercept is that of all rows.
+        """
+        dual = self._inverse[count:] @ (self._indicators - self._indicators.mean(axis=0))
+        scores: Array = self._indicators[count:] - dual / np.diag(self._inverse)[count:, None]
+        return scores
+
+
+@dataclass(frozen=True, eq=False)
+class _Moments:
+    """Sums over rows: of products of inputs (inputs, inputs), of inputs with indicators, of both, and how many rows."""
+
+    products: Array
+    with_indicators: Array
+    inputs: Array
+    indicators: Array
+    rows: int
+
+    @classmethod
+    def of(cls, centred: NDArray[np.float32], indicators: Array) -> "_Moments":
+        """Sum up rows (n, inputs) and (n, actions)."""
+        products = (centred.T @ centred).astype(np.float64)
+        with_indicators = (centred.T @ indicators.astype(np.float32)).astype(np.float64)
+        inputs = centred.sum(axis=0, dtype=np.float64)
+        return cls(products, with_indicators, inputs, indicators.sum(axis=0), len(centred))
+
+    def without(self, other: "_Moments") -> "_Moments":
+        """Subtract the sums over some of the rows."""
+        return _Moments(
+            self.products - other.products,
+            self.with_indicators - other.with_indicators,
+            self.inputs - other.inputs,
+            self.indicators - other.indicators,
+            self.rows - other.rows,
+        )
+
+    def solution(self, penalty: float) -> tuple[Array, Array]:
+        """Return the axes (inputs, actions) and the intercept (actions,)."""
+        intercept = self.indicators / max(self.rows, 1)
+        targets = self.with_indicators - np.outer(self.inputs, intercept)
+        penalised: Array = self.products + penalty * np.eye(len(self.products))
+        return np.linalg.solve(penalised, targets).astype(np.float64), intercept
+
+
+class PrimalRidge:
+    """The axes are sought from the sums of products of inputs: rows left out are subtracted from these."""
+
+    def __init__(self, vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> None:
+        mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
+        self._centred, self._indicators = vectors - mean, indicators
+        self._moments = _Moments.of(self._centred, indicators)
+        length2 = float(np.trace(self._moments.products)) / len(vectors)
+        self._penalty = shrinkage * max(length2, SMALLEST_LENGTH2)
+        axes, self._intercept = self._moments.solution(self._penalty)
+        self.axes: NDArray[np.float32] = axes.astype(np.float32)
+        self.offsets: NDArray[np.float32] = (self._intercept - mean @ self.axes).astype(np.float32)
+
+    @cached_property
+    def scores(self) -> Array:
+        """The scores of all rows, (n, actions)."""
+        scores: Array = (self._centred @ self.axes).astype(np.float64) + self._intercept
+        return scores
+
+    def held_out(self, rows: Indices) -> Array:
+        """Return the scores (rows, actions) by a regression that was fitted to all other rows."""
+        centred = self._centred[rows]
+        rest = self._moments.without(_Moments.of(centred, self._indicators[rows]))
+        axes, intercept = rest.solution(self._penalty)
+        scores: Array = centred @ axes + intercept
+        return scores
+
+    def each_left_out(self, count: int) -> Array:
+        """Return the scores of the rows from `count` on, each by a regression that was fitted to all others.
+
+        By the leave-one-out formula of ridge regression. The intercept is that of all rows.
+        """
+        centred = self._centred[count:].astype(np.float64)
+        inverse = np.linalg.inv(self._moments.products + self._penalty * np.eye(centred.shape[1]))
+        leverages = np.einsum("ij,ij->i", centred @ inverse, centred)
+        errors = self._indicators[count:] - self.scores[count:]
+        scores: Array = self._indicators[count:] - errors / (1 - leverages)[:, None]
+        return scores

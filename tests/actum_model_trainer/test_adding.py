@@ -1,0 +1,179 @@
+"""Examples are added to a trained model: it knows the new action, keeps its maps, and still knows the others."""
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from actum_model_trainer.provenance import digest_of
+from actum_model_trainer.samples import LabelledStream, SegmentSample
+from actum_model_trainer.training import TrainingError, add_to, train, train_to_spot, update
+from performers import TINY, TINY_PAPER
+from som_classifier.first_layer import MAP_INPUTS
+from som_classifier.model import NOTHING_KEPT, Model
+from som_classifier.model_loading import kept_in, load_model
+from som_classifier.presets import PRESETS
+from som_classifier.pyramid_model import PyramidModel
+from som_classifier.spotting.spotted import SpottingOptions
+from unmarked import encoded_live, scene, swings_said_to_be_none, taught
+
+NEW = "swing"
+FEW = 5
+
+
+@pytest.fixture(autouse=True)
+def _tiny_is_a_preset(monkeypatch: pytest.MonkeyPatch) -> None:
+    for preset in (TINY, TINY_PAPER):
+        monkeypatch.setitem(PRESETS, preset.name, preset)
+
+
+def old_samples() -> list[SegmentSample]:
+    return [sample for sample in taught().usable if sample.label != NEW]
+
+
+def new_samples() -> list[SegmentSample]:
+    return [sample for sample in taught().usable if sample.label == NEW][:FEW]
+
+
+@cache
+def without_swings() -> PyramidModel:
+    streams = [LabelledStream(**{**vars(each), "segments": _others(each)}) for each in taught().streams]
+    model = train_to_spot(old_samples(), streams, TINY)
+    assert isinstance(model, PyramidModel)
+    return model
+
+
+def _others(stream: LabelledStream) -> tuple[tuple[int, int, str], ...]:
+    return tuple(segment for segment in stream.segments if segment[2] != NEW)
+
+
+@cache
+def with_swings() -> PyramidModel:
+    model = add_to(without_swings(), without_swings().kept, new_samples(), taught().streams)
+    assert isinstance(model, PyramidModel)
+    return model
+
+
+def named(model: Model) -> list[str]:
+    """What a model calls each action of somebody else's scene."""
+    of = scene(seed=9)
+    frames = encoded_live(model, of)
+    return [model.recognise(frames[act.first : act.last + 1], complete=True).label for act in of.acts]
+
+
+def found(model: Model) -> list[str]:
+    """The actions that a model finds in that scene without marks, in order."""
+    [spotter] = model.spotters([SpottingOptions()])
+    return [each.label for frame in encoded_live(model, scene(seed=9)) for each in spotter.step(frame).segments]
+
+
+def done() -> list[str]:
+    return [act.action for act in scene(seed=9).acts]
+
+
+def test_an_added_action_is_recognised_and_the_others_still_are() -> None:
+    assert NEW not in named(without_swings()) and NEW in done()
+    assert named(with_swings()) == done()
+
+
+def test_an_added_action_is_found_without_marks() -> None:
+    assert NEW not in found(without_swings())
+    assert found(with_swings()) == done()
+
+
+def test_the_maps_stay() -> None:
+    for name in MAP_INPUTS:
+        assert np.array_equal(with_swings().arrays[name], without_swings().arrays[name])
+
+
+def test_the_metadata_describe_all_examples() -> None:
+    before, after = without_swings().metadata, with_swings().metadata
+    assert after.labels == sorted([*before.labels, NEW])
+    assert after.samples == before.samples + FEW
+    assert after.updated_from == without_swings().id
+    assert after.data_digest != before.data_digest
+    assert set(after.held_out) == set(after.labels)
+
+
+def test_a_file_keeps_what_is_needed_and_a_classifier_does_not_read_it(tmp_path: Path) -> None:
+    path = tmp_path / "model.npz"
+    without_swings().save(path)
+    model = load_model(path)
+    assert isinstance(model, PyramidModel) and not model.kept
+    assert model.id == without_swings().id
+    again = add_to(model, kept_in(path), new_samples(), taught().streams)
+    assert again.id == with_swings().id
+
+
+def test_more_actions_can_be_added_one_after_the_other() -> None:
+    lifts = [sample for sample in old_samples() if sample.label != "push"]
+    pushes = [sample for sample in old_samples() if sample.label == "push"]
+    model = train(lifts + new_samples(), TINY)
+    assert isinstance(model, PyramidModel)
+    for samples in (pushes[:3], pushes[3:]):
+        model = add_to(model, model.kept, samples, [])
+        assert isinstance(model, PyramidModel)
+    assert named(model) == done()
+    assert model.metadata.samples == len(old_samples()) + FEW
+
+
+def test_a_model_that_keeps_nothing_is_refused() -> None:
+    with pytest.raises(TrainingError, match="keeps nothing of its training.*train it again"):
+        add_to(without_swings(), NOTHING_KEPT, new_samples(), [])
+
+
+@pytest.mark.parametrize(
+    ("kept", "said"),
+    [
+        pytest.param(lambda kept: {n: a for n, a in kept.items() if n != "kept_background"}, "damaged", id="missing"),
+        pytest.param(
+            lambda kept: kept | {"kept_labels": np.char.add(kept["kept_labels"], "x")}, "another model", id="other"
+        ),
+        pytest.param(
+            lambda kept: kept | {"kept_pooled_directions": kept["kept_pooled_directions"][1:]}, "another", id="shape"
+        ),
+    ],
+)
+def test_what_does_not_fit_the_model_is_refused(kept: Callable[[Any], Any], said: str) -> None:
+    with pytest.raises(TrainingError, match=f"{said}.*train it again"):
+        add_to(without_swings(), kept(dict(without_swings().kept)), new_samples(), [])
+
+
+def test_recordings_without_examples_are_refused() -> None:
+    with pytest.raises(TrainingError, match="no usable examples to add"):
+        add_to(without_swings(), without_swings().kept, [], [])
+
+
+def test_a_model_of_the_paper_is_refused() -> None:
+    with pytest.raises(TrainingError, match="no action can be added to a model of preset tiny paper"):
+        add_to(train(old_samples(), TINY_PAPER), NOTHING_KEPT, new_samples(), [])
+
+
+def test_an_update_adds_where_only_new_actions_have_come() -> None:
+    before, every = without_swings(), [*old_samples(), *new_samples()]
+    after = update(before, every, taught().streams, TINY, kept=before.kept)
+    assert isinstance(after, PyramidModel)
+    assert after.metadata.updated_from == before.id
+    assert after.metadata.data_digest == digest_of(every)
+    assert named(after) == done()
+
+
+def test_an_update_trains_anew_where_anything_else_has_changed() -> None:
+    before, every = without_swings(), [*old_samples(), *new_samples()]
+    corrected = update(before, every[1:], taught().streams, TINY, kept=before.kept)
+    assert corrected.id == train_to_spot(every[1:], taught().streams, TINY).id
+    streams = [*taught().streams, *swings_said_to_be_none()]
+    with_counterexamples = update(before, every, streams, TINY, kept=before.kept)
+    assert with_counterexamples.id == train_to_spot(every, streams, TINY).id
+
+
+def test_actions_can_be_added_after_an_update_of_the_others() -> None:
+    before = without_swings()
+    streams = [LabelledStream(**{**vars(each), "segments": _others(each)}) for each in taught().streams]
+    updated = update(before, old_samples(), streams, TINY, seed=1, kept=before.kept)
+    assert isinstance(updated, PyramidModel)
+    added = add_to(updated, updated.kept, new_samples(), taught().streams)
+    assert named(added) == done() and found(added) == done()

@@ -1,0 +1,64 @@
+"""Ridge regression: both forms give the same, and coordinates in enough directions give what the vectors do."""
+
+import numpy as np
+import pytest
+
+from actum_model_trainer.basis import Basis
+from actum_model_trainer.ridge import DualRidge, PrimalRidge, Ridge, ridge
+
+SHRINKAGE = 0.2
+COUNT = 20
+"""Rows of actions; the others are background."""
+
+
+def rows(inputs: int = 12) -> tuple[np.ndarray, np.ndarray]:
+    rng = np.random.default_rng(3)
+    vectors = (rng.normal(size=(30, inputs)) + 2).astype(np.float32)
+    indicators = np.zeros((30, 3))
+    indicators[np.arange(COUNT), np.arange(COUNT) % 3] = 1
+    return vectors, indicators
+
+
+def answers(fitted: Ridge) -> list[np.ndarray]:
+    held_out = np.array([1, 4, 5])
+    return [fitted.axes, fitted.offsets, fitted.scores, fitted.held_out(held_out), fitted.each_left_out(COUNT)]
+
+
+@pytest.mark.parametrize("inputs", [5, 12, 40])
+def test_the_dual_and_the_primal_form_give_the_same(inputs: int) -> None:
+    dual, primal = (answers(form(*rows(inputs), SHRINKAGE)) for form in (DualRidge, PrimalRidge))
+    for one, other in zip(dual, primal, strict=True):
+        np.testing.assert_allclose(one, other, atol=2e-5)
+
+
+def test_the_form_with_the_smaller_matrix_is_taken() -> None:
+    assert isinstance(ridge(*rows(40), SHRINKAGE), DualRidge)
+    assert isinstance(ridge(*rows(12), SHRINKAGE), PrimalRidge)
+
+
+def test_as_many_directions_as_inputs_change_nothing() -> None:
+    vectors, indicators = rows()
+    basis = Basis.of(vectors, 12)
+    whole, reduced = (PrimalRidge(each, indicators, SHRINKAGE) for each in (vectors, basis.coordinates(vectors)))
+    np.testing.assert_allclose(whole.scores, reduced.scores, atol=1e-5)
+    axes = basis.axes(reduced.axes)
+    np.testing.assert_allclose(whole.axes, axes, atol=1e-5)
+    np.testing.assert_allclose(whole.offsets, basis.offsets(reduced.offsets, axes), atol=1e-5)
+
+
+def test_directions_are_orthonormal_also_those_added_for_other_vectors() -> None:
+    vectors, _ = rows(40)
+    basis = Basis.of(vectors[:10], 6).extended(vectors[10:], 7)
+    assert basis.rank == 13
+    np.testing.assert_allclose(basis.directions.T @ basis.directions, np.eye(13), atol=1e-5)
+
+
+def test_coordinates_can_be_moved_to_another_basis() -> None:
+    vectors, _ = rows()
+    one, other = Basis.of(vectors, 12), Basis.of(vectors[5:20] + 1, 12)
+    moved = one.moved(one.coordinates(vectors), other)
+    np.testing.assert_allclose(moved, other.coordinates(vectors), atol=1e-4)
+
+
+def test_vectors_that_are_all_the_same_have_no_direction() -> None:
+    assert Basis.of(np.ones((4, 6), np.float32), 3).rank == 0
