@@ -1,5 +1,6 @@
 """Compiles shared/actum/_compiled.c where a C compiler is at hand; without one the package works as well, slower."""
 
+import hashlib
 import shutil
 import subprocess
 import sys
@@ -41,9 +42,10 @@ def compiled(source: Path, library: Path) -> str | None:
     compiler = next(filter(None, map(shutil.which, ("cc", "gcc", "clang"))), None)
     if compiler is None:
         return "no C compiler found (cc, gcc or clang)"
+    digest = hashlib.sha256(source.read_bytes()).hexdigest()  # `actum.core` compares it
     include = f"-I{sysconfig.get_paths()['include']}"
     done = subprocess.run(
-        [compiler, "-O3", *ROUNDING, *LOADABLE, include, str(source), "-o", str(library), "-lm"],
+        [compiler, "-O3", *ROUNDING, *LOADABLE, include, f'-DSOURCE="{digest}"', str(source), "-o", str(library), "-lm"],
         capture_output=True,
         text=True,
         check=False,

@@ -1,5 +1,6 @@
 """The messages in which the classifier answers."""
 
+import math
 from collections.abc import Mapping
 from typing import Any, Literal
 
@@ -25,7 +26,8 @@ WHY_HELD_BACK: Mapping[WhyHeldBack, str] = {
 def partial_action(segment: OpenSegment, recognition: Recognition, seen: Stretch, posture: Posture) -> Action:
     """Say what an open segment shows so far, at a posture's instant."""
     assert segment.start_ns is not None
-    return Action.of_checked(
+    build = Action.of_checked if math.isfinite(recognition.confidence) else Action  # which refuses what is not finite
+    return build(
         stamp_ns=posture.stamp_ns,
         sensor=posture.sensor,
         agent=posture.agent,

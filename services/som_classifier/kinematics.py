@@ -55,6 +55,7 @@ class KinematicsFilter:
             stamp_ns: of the frame.
             joints: (15, 3), upright, metres, NaN where missing.
         """
+        joints = np.ascontiguousarray(joints, np.float64)
         last_ns, self._stamp_ns = self._stamp_ns, stamp_ns
         if last_ns is None or not 0 < stamp_ns - last_ns <= GAP_NS:
             self._restart(joints)
@@ -79,7 +80,7 @@ class KinematicsFilter:
         """
         if steps is None:
             return None if np.isnan(joints[:, 0]).any() else self._advanced_in_numpy(joints, elapsed_s)
-        joints, advanced = np.ascontiguousarray(joints), np.empty((4, *joints.shape))
+        advanced = np.empty((4, *joints.shape))
         gain, decay = 1 - math.exp(-elapsed_s / SPEED_TIME_CONSTANT_S), math.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
         known = steps.smoothed(
             joints, self._before, self._state, elapsed_s, gain, STILL_TIME_CONSTANT_S, STILL_SPEED_MPS,

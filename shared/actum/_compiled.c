@@ -21,10 +21,13 @@
 #define HAS_FUSED 0
 #endif
 #endif
+#ifndef SOURCE
+#define SOURCE ""
+#endif
 #define INLINE static inline __attribute__((always_inline))
 
 enum { SIDES = 2, CHANNELS = 4, JOINTS = 15, COORDINATES = 45, PARTS = 5, LIMBS = 4, MOMENTS = 8, MOST_INSTANTS = 64, LANES = 8, BLOCK = 32,
-       MOST_INPUTS = 3 * COORDINATES };
+       MOST_INPUTS = 3 * COORDINATES, TOTALS = PARTS + LIMBS * MOMENTS + 3, BODY = 4 * COORDINATES + 16 };
 
 /* Release the buffers that were taken, and return None, or NULL where an error is set. */
 static PyObject *released(Py_buffer *buffers, int count)
@@ -34,6 +37,17 @@ static PyObject *released(Py_buffer *buffers, int count)
     if (PyErr_Occurred())
         return NULL;
     Py_RETURN_NONE;
+}
+
+/* Whether each of some buffers has at least so many bytes; sets an error where one has not. */
+static int are_long_enough(const Py_buffer *buffers, const size_t *bytes, int count)
+{
+    for (int n = 0; n < count; n++)
+        if ((size_t)buffers[n].len < bytes[n]) {
+            PyErr_SetString(PyExc_ValueError, "an array is shorter than the compiled step needs");
+            return 0;
+        }
+    return 1;
 }
 
 /* Prefix sums of a segment: rows of sums with the distances travelled, or the frames' activities. Of an activity the
@@ -166,6 +180,10 @@ static PyObject *pooled(PyObject *module, PyObject *args)
         return NULL;
     Cells cells = {b[1].buf, b[2].buf, b[3].buf, b[1].len / 8, b[2].len / 4, scale};
     Segment segment = {sums, b[0].buf, 0, b[0].len / 8 - 1, 0};
+    if (cells.cells < 1) {
+        PyErr_SetString(PyExc_ValueError, "the pyramid has no cell");
+        return released(b, 5);
+    }
     Py_ssize_t units = b[4].len / 4 / cells.cells;
     double *at = PyMem_Malloc(cells.count * sizeof(double));
     float *at_border = PyMem_Malloc(cells.count * units * sizeof(float));
@@ -192,6 +210,10 @@ static PyObject *pooled_windows(PyObject *module, PyObject *args)
                           &b[0], &b[1], &b[2], &scale, &b[3]))
         return NULL;
     Cells cells = {b[0].buf, b[1].buf, b[2].buf, b[0].len / 8, b[1].len / 4, scale};
+    if (cells.cells < 1 || PyList_Size(sides) != PyList_Size(firsts)) {
+        PyErr_SetString(PyExc_ValueError, "the pyramid has no cell, or a window no side");
+        return released(b, 4);
+    }
     Py_ssize_t windows = PyList_Size(firsts), row = windows ? b[3].len / 4 / windows : 0, units = row / cells.cells;
     double *at = PyMem_Malloc(cells.count * sizeof(double));
     float *at_border = PyMem_Malloc(cells.count * units * sizeof(float) + 1);
@@ -332,7 +354,7 @@ static PyObject *exponents(PyObject *module, PyObject *args)
     float *scores = PyMem_Malloc((SIDES * width + units) * sizeof(float)), *sums = scores + SIDES * width;
     if (scores == NULL)
         PyErr_NoMemory();
-    else if (count > MOST_INPUTS || b[9].len < count * padded * (Py_ssize_t)sizeof(float))
+    else if (units < 1 || count > MOST_INPUTS || b[9].len < count * padded * (Py_ssize_t)sizeof(float))
         PyErr_SetString(PyExc_ValueError, "more inputs than the compiled step has room for, or than there are weights");
     else
         map_inputs(b[0].buf, b[1].buf, b[2].buf, b[3].buf, b[4].buf, b[5].buf, b[6].buf, b[8].buf, inputs, count);
@@ -427,6 +449,12 @@ static PyObject *added(PyObject *module, PyObject *args)
     uint32_t *after = b[3].buf;
     int64_t *totals = b[11].buf, moved_um = 0;
     Py_ssize_t units = b[0].len / (Py_ssize_t)sizeof(float) / SIDES / CHANNELS;
+    const size_t sums_bytes = b[0].len, bytes[12] = {
+        SIDES * CHANNELS * sizeof(float), CHANNELS * sizeof(float), sums_bytes, sums_bytes, PARTS * sizeof(double),
+        sizeof image, COORDINATES * sizeof(int32_t), sizeof image, units * COORDINATES * sizeof(float),
+        LIMBS * (MOMENTS - 2) * sizeof(int32_t), TOTALS * sizeof(int64_t), TOTALS * sizeof(int64_t)};
+    if (!are_long_enough(b, bytes, 12))
+        return released(b, 12);
     for (int block = 0; block < SIDES * CHANNELS; block++) {
         const float *activity = activities + block * units;
         float factor = shares[block % CHANNELS] / pairwise_sum(activity, units);
@@ -436,7 +464,7 @@ static PyObject *added(PyObject *module, PyObject *args)
     }
     for (int i = 0; i < COORDINATES; i++)
         image[i] = posture[mirror[i]] * signs[i];
-    memcpy(totals, totals_before, b[11].len);
+    memcpy(totals, totals_before, TOTALS * sizeof *totals);
     add_totals(b[4].buf, posture, image, b[9].buf, b[8].buf, winners, smallest2, totals);
     for (int part = 0; part < PARTS; part++)
         moved_um += totals[part] - totals_before[part];
@@ -460,6 +488,9 @@ static PyObject *smoothed(PyObject *module, PyObject *args)
     const double *joints = b[0].buf, *before = b[1].buf, *speed = b[2].buf, *smooth = speed + COORDINATES;
     const double *lagging = smooth + COORDINATES;
     double *out = b[3].buf;
+    const size_t one = COORDINATES * sizeof(double), bytes[4] = {one, one, 3 * one, 4 * one};
+    if (!are_long_enough(b, bytes, 4))
+        return released(b, 4);
     for (int joint = 0; joint < JOINTS; joint++) {
         double speed2 = 0.0;
         known &= !isnan(joints[3 * joint]);
@@ -543,8 +574,14 @@ static int read_joints(PyObject *joints, double *out)
             return -1;
         }
         unknown += !known;
-        for (int i = 0; i < 3; i++)
-            *out++ = known ? PyFloat_AsDouble(PyList_GetItem(point, i)) : NAN;
+        for (int i = 0; i < 3; i++) {
+            PyObject *number = known ? PyList_GetItem(point, i) : NULL;
+            if (known && !PyFloat_Check(number) && !PyLong_CheckExact(number)) { /* another may run code as it is read */
+                PyErr_SetString(PyExc_TypeError, "a coordinate is not a number");
+                return -1;
+            }
+            *out++ = known ? PyFloat_AsDouble(number) : NAN;
+        }
     }
     return PyErr_Occurred() ? -1 : unknown;
 }
@@ -587,6 +624,11 @@ static PyObject *body(PyObject *module, PyObject *args)
     if (!PyArg_ParseTuple(args, "Oy*y*y*y*dddw*", &message, &b[0], &b[1], &b[2], &b[3], &reach_m, &bone_m, &shortest_m,
                           &b[4]))
         return NULL;
+    const size_t of_bones = (JOINTS - 1) * sizeof(int32_t);
+    const size_t bytes[5]
+        = {of_bones, of_bones, (JOINTS - 1) * sizeof(double), 3 * sizeof(int32_t), BODY * sizeof(double)};
+    if (!are_long_enough(b, bytes, 5))
+        return released(b, 5);
     const double *lengths_m = b[2].buf;
     const int32_t *parents = b[0].buf, *children = b[1].buf, *hips_torso = b[3].buf, torso = hips_torso[2];
     double *joints = b[4].buf, *scaled = joints + COORDINATES, *frame = scaled + COORDINATES;
@@ -638,6 +680,9 @@ static PyObject *usable(PyObject *module, PyObject *args)
     double most_m;
     if (!PyArg_ParseTuple(args, "OOO!idw*", &joint_list, &upright_list, &PyList_Type, &motion_list, &torso, &most_m, &b))
         return NULL;
+    const size_t bytes = (2 * COORDINATES + PARTS) * sizeof(double);
+    if (!are_long_enough(&b, &bytes, 1))
+        return released(&b, 1);
     double *joints = b.buf, *upright = joints + COORDINATES, *motion = upright + COORDINATES;
     int unknown = read_joints(joint_list, joints);
     int unknown_upright = upright_list == Py_None ? unknown : read_joints(upright_list, upright);
@@ -759,6 +804,11 @@ static PyObject *posture(PyObject *module, PyObject *args)
     const double *level = b[1].buf, *metric = joints;
     double turned_metric[COORDINATES], turned_scaled[COORDINATES], upright[COORDINATES], left[2], motion[PARTS] = {0};
     double *heading = b[2].buf, *smooth = b[5].buf;
+    const size_t bytes[7] = {BODY * sizeof(double), level ? 9 * sizeof(double) : 0, 6 * sizeof(double),
+                             4 * sizeof(int32_t), 6 * sizeof(double), COORDINATES * sizeof(double),
+                             JOINTS * sizeof(int32_t)};
+    if (!are_long_enough(b, bytes, 7))
+        return released(b, 7);
     if (level != NULL) {
         turned(level, joints, turned_metric);
         turned(level, scaled, turned_scaled);
@@ -808,6 +858,9 @@ static PyObject *spreads(PyObject *module, PyObject *args)
     double of[LIMBS];
     if (!PyArg_ParseTuple(args, "y*y*", &b[0], &b[1]))
         return NULL;
+    const size_t bytes[2] = {LIMBS * MOMENTS * sizeof(int64_t), LIMBS * MOMENTS * sizeof(int64_t)};
+    if (!are_long_enough(b, bytes, 2))
+        return released(b, 2);
     spreads_between(b[0].buf, b[1].buf, of);
     PyBuffer_Release(&b[0]);
     PyBuffer_Release(&b[1]);
@@ -825,6 +878,9 @@ static PyObject *left_arm_acts(PyObject *module, PyObject *args)
     double jitter_mm, factor, of[LIMBS], most;
     if (!PyArg_ParseTuple(args, "y*y*ndd", &b[0], &b[1], &first, &jitter_mm, &factor))
         return NULL;
+    const size_t least = (first + LIMBS * MOMENTS) * sizeof(int64_t), bytes[2] = {least, least};
+    if (!are_long_enough(b, bytes, 2))
+        return released(b, 2);
     spreads_between((const int64_t *)b[0].buf + first, (const int64_t *)b[1].buf + first, of);
     PyBuffer_Release(&b[0]);
     PyBuffer_Release(&b[1]);
@@ -898,7 +954,7 @@ static PyObject *running_sums(PyObject *module, PyObject *args)
         return NULL;
     const float *activities = b[0].buf;
     uint32_t *sums = b[1].buf;
-    if (b[1].len != b[0].len + units * (Py_ssize_t)sizeof *sums) {
+    if (units < 1 || b[1].len != b[0].len + units * (Py_ssize_t)sizeof *sums) {
         PyErr_SetString(PyExc_ValueError, "there are not as many rows of sums as rows of activities and one");
         return released(b, 2);
     }
@@ -1079,6 +1135,10 @@ static PyMethodDef methods[] = {
     {"usable", usable, METH_VARARGS, usable_doc},
     {NULL, NULL, 0, NULL},
 };
-static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "actum._compiled", NULL, 0, methods, NULL, NULL, NULL, NULL};
+/* Say of which source this was compiled: a library of another one does not go with the Python code beside it. */
+static int name_source(PyObject *module) { return PyModule_AddStringConstant(module, "source", SOURCE); }
+
+static PyModuleDef_Slot slots[] = {{Py_mod_exec, name_source}, {0, NULL}};
+static struct PyModuleDef definition = {PyModuleDef_HEAD_INIT, "actum._compiled", NULL, 0, methods, slots, NULL, NULL, NULL};
 
 PyMODINIT_FUNC PyInit__compiled(void) { return PyModuleDef_Init(&definition); }

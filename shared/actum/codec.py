@@ -72,10 +72,13 @@ def _fields_of(part: Any) -> dict[str, Any]:
     """Return the fields of a part of a message; `model_dump` would copy the whole message first.
 
     Raises:
+        OverflowError: it is a whole number of more than 64 bits.
         TypeError: it is neither a number, text or container nor a part of a message.
     """
     if isinstance(part, BaseModel):
         return vars(part)
+    if isinstance(part, int):
+        raise OverflowError(f"{part} does not fit into 64 bits")
     raise TypeError(f"a message holds a {type(part).__name__}, which cannot be packed")
 
 

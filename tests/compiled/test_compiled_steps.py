@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
@@ -10,6 +11,7 @@ from benchmarks.rig.numpy_alone import numpy_alone
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from actum import core
 from actum.arrays import joints_to_array
 from actum.core import steps
 from actum.geometry import DegenerateError
@@ -212,3 +214,57 @@ def test_joints_that_coincide_are_refused_by_both() -> None:
     assert known_body(joints.tolist(), 10.0, 2.0) is None
     with pytest.raises(DegenerateError):
         body_of(joints)
+
+
+NUMBERS = np.zeros(400)
+POSE = [[float(n), 0.0, 2.0] for n in range(15)]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: steps.body(POSE, NUMBERS, NUMBERS, NUMBERS, NUMBERS, 1.0, 1.0, 1.0, np.empty(2)),
+        lambda: steps.smoothed(NUMBERS, NUMBERS, np.zeros(5), 0.03, 0.1, 1.0, 1.0, 1.0, 1.0, np.empty(180)),
+        lambda: steps.usable(POSE, None, [0.0] * 5, 0, 10.0, np.empty(3)),
+        lambda: steps.spreads(np.zeros(3, np.int64), np.zeros(3, np.int64)),
+        lambda: steps.left_arm_acts(np.zeros(40, np.int64), np.zeros(40, np.int64), 20, 1.0, 1.0),
+        lambda: steps.running_sums(np.zeros((3, 0), np.float32), 1.0, 0, np.zeros((4, 0), np.uint32)),
+        lambda: steps.pooled([], NUMBERS, NUMBERS, b"", b"", 1.0, np.empty(3, np.float32)),
+        lambda: steps.pooled_windows([], [0], [False], NUMBERS, b"", b"", 1.0, np.empty(3, np.float32)),
+    ],
+)
+def test_arrays_that_are_too_short_are_refused_before_anything_is_read(call: Callable[[], object]) -> None:
+    with pytest.raises(ValueError):
+        call()
+
+
+def test_a_coordinate_that_is_no_plain_number_is_refused() -> None:
+    class Odd:
+        def __float__(self) -> float:
+            return 1.0
+
+    with pytest.raises(TypeError):
+        steps.usable([[Odd(), 0.0, 0.0], *POSE[1:]], None, [0.0] * 5, 0, 10.0, np.empty(95))
+
+
+def test_a_library_of_another_source_is_not_used(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    other = tmp_path / "_compiled.c"
+    other.write_text("/* newer */")
+    monkeypatch.setattr(core, "SOURCE", other)
+    assert core._compiled() is None
+    assert "make install" in caplog.text
+    monkeypatch.setattr(core, "SOURCE", tmp_path / "none.c")
+    assert core._compiled() is steps, "an installed package may have no source"
+
+
+@given(st.integers(0, 2**32), st.booleans())
+def test_kinematics_take_joints_however_they_lie_in_memory(seed: int, transposed: bool) -> None:
+    plain, other = KinematicsFilter(), KinematicsFilter()
+    joints = np.random.default_rng(seed).normal(size=(5, 15, 3))
+    wide = np.pad(joints, ((0, 0), (0, 0), (0, 1)))
+    for number, each in enumerate(joints):
+        given_as = np.asfortranarray(each) if transposed else wide[number, :, :3]
+        expected, got = plain.step(number * FRAME_NS, each), other.step(number * FRAME_NS, given_as)
+        assert np.array_equal(expected.posture, got.posture) and np.array_equal(expected.velocity, got.velocity)

@@ -71,7 +71,8 @@ class Message(BaseModel):
     def of_checked(cls, **fields: Any) -> Self:
         """Build a message of a step's own results without checking them again: they are of the fields' types already.
 
-        It is the message that the class makes of the same fields; lists become its own.
+        It is the message that the class makes of the same fields. All lists and maps have to be given, and are not
+        copied: nobody may change them afterwards.
         """
         message = cls.__new__(cls)
         object.__setattr__(message, "__dict__", {**_defaults(cls), **fields})
@@ -83,8 +84,9 @@ class Message(BaseModel):
 
 @cache
 def _defaults(kind: type[Message]) -> dict[str, Any]:
-    """Return a message's fields in order, with their default values."""
-    return {name: field.get_default(call_default_factory=True) for name, field in kind.model_fields.items()}
+    """Return a message's fields in order with their default values; None for a list or map: messages would share it."""
+    defaults = {name: field.get_default(call_default_factory=True) for name, field in kind.model_fields.items()}
+    return {name: None if isinstance(default, (list, dict)) else default for name, default in defaults.items()}
 
 
 class Model(BaseModel):
