@@ -216,21 +216,21 @@ def test_joints_that_coincide_are_refused_by_both() -> None:
         body_of(joints)
 
 
-NUMBERS = np.zeros(400)
+ZEROS = np.zeros(400)
 POSE = [[float(n), 0.0, 2.0] for n in range(15)]
 
 
 @pytest.mark.parametrize(
     "call",
     [
-        lambda: steps.body(POSE, NUMBERS, NUMBERS, NUMBERS, NUMBERS, 1.0, 1.0, 1.0, np.empty(2)),
-        lambda: steps.smoothed(NUMBERS, NUMBERS, np.zeros(5), 0.03, 0.1, 1.0, 1.0, 1.0, 1.0, np.empty(180)),
+        lambda: steps.body(POSE, ZEROS, ZEROS, ZEROS, ZEROS, 1.0, 1.0, 1.0, np.empty(2)),
+        lambda: steps.smoothed(ZEROS, ZEROS, np.zeros(5), 0.03, 0.1, 1.0, 1.0, 1.0, 1.0, np.empty(180)),
         lambda: steps.usable(POSE, None, [0.0] * 5, 0, 10.0, np.empty(3)),
         lambda: steps.spreads(np.zeros(3, np.int64), np.zeros(3, np.int64)),
         lambda: steps.left_arm_acts(np.zeros(40, np.int64), np.zeros(40, np.int64), 20, 1.0, 1.0),
         lambda: steps.running_sums(np.zeros((3, 0), np.float32), 1.0, 0, np.zeros((4, 0), np.uint32)),
-        lambda: steps.pooled([], NUMBERS, NUMBERS, b"", b"", 1.0, np.empty(3, np.float32)),
-        lambda: steps.pooled_windows([], [0], [False], NUMBERS, b"", b"", 1.0, np.empty(3, np.float32)),
+        lambda: steps.pooled([], ZEROS, ZEROS, b"", b"", 1.0, np.empty(3, np.float32)),
+        lambda: steps.pooled_windows([], [0], [False], ZEROS, b"", b"", 1.0, np.empty(3, np.float32)),
     ],
 )
 def test_arrays_that_are_too_short_are_refused_before_anything_is_read(call: Callable[[], object]) -> None:
