@@ -45,7 +45,18 @@ def compiled(source: Path, library: Path) -> str | None:
     digest = hashlib.sha256(source.read_bytes()).hexdigest()  # `actum.core` compares it
     include = f"-I{sysconfig.get_paths()['include']}"
     done = subprocess.run(
-        [compiler, "-O3", *ROUNDING, *LOADABLE, include, f'-DSOURCE="{digest}"', str(source), "-o", str(library), "-lm"],
+        [
+            compiler,
+            "-O3",
+            *ROUNDING,
+            *LOADABLE,
+            include,
+            f'-DSOURCE="{digest}"',
+            str(source),
+            "-o",
+            str(library),
+            "-lm",
+        ],
         capture_output=True,
         text=True,
         check=False,

@@ -16,6 +16,10 @@ class TrainingError(ValueError):
     """No model can be trained on these samples."""
 
 
+class KeptError(TrainingError):
+    """What a model keeps of its training is missing, damaged or another model's: no example can be added to it."""
+
+
 def actions_of(samples: Sequence[SegmentSample]) -> list[str]:
     """List the actions among the samples, sorted.
 

@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 from threadpoolctl import threadpool_limits
@@ -9,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from actum_model_trainer import adding, paper_training, pyramid_training
 from actum_model_trainer.background import counterexamples, shipped
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.provenance import TrainingError, actions_of, digest_of
+from actum_model_trainer.provenance import KeptError, TrainingError, actions_of, digest_of
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.spotting.spotting_training import with_spotting
 from som_classifier.model import NOTHING_KEPT, Arrays, Model
@@ -99,7 +100,8 @@ def update(
 
     Where nothing but examples of new actions has come since, these are added to the model. A model of another kind than
     the preset's, of a kind that cannot be updated, of other actions or without a search is trained anew. The background
-    is that which comes with actum. `kept` is what the model's file keeps of its training.
+    is that which comes with actum. `kept` is what the model's file keeps of its training; where it keeps nothing, or is
+    damaged, nothing is added.
 
     Raises:
         TrainingError: fewer than two actions among the samples.
@@ -107,7 +109,8 @@ def update(
     if new := _added_since(model, kept, samples, streams, preset):
         holding = {sample.file for sample in new}
         more = [each for each in streams if each.file in holding]
-        return _added(model, kept, new, more, digest_of(samples), seed, progress)
+        with suppress(KeptError):
+            return _added(model, kept, new, more, digest_of(samples), seed, progress)
     updating = UPDATES.get(preset.kind)
     alike = model.metadata.kind == preset.kind and model.labels == actions_of(samples)
     if updating is None or not alike or model.spotting is None:
@@ -170,7 +173,7 @@ def _added_since(
 ) -> list[SegmentSample]:
     """Return the examples of new actions, where all others are those that the model was trained on; else none."""
     before = [sample for sample in samples if sample.label in model.labels]
-    fits = bool(kept) and model.metadata.preset == preset.name and preset.kind in ADDITIONS
+    fits = model.spotting is not None and model.metadata.preset == preset.name and preset.kind in ADDITIONS
     if not fits or counterexamples(streams) or digest_of(before) != model.metadata.data_digest:
         return []
     return [sample for sample in samples if sample.label not in model.labels]

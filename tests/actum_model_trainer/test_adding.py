@@ -1,6 +1,7 @@
 """Examples are added to a trained model: it knows the new action, keeps its maps, and still knows the others."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -38,10 +39,13 @@ def new_samples() -> list[SegmentSample]:
     return [sample for sample in taught().usable if sample.label == NEW][:FEW]
 
 
+def streams_without_swings() -> list[LabelledStream]:
+    return [replace(each, segments=_others(each)) for each in taught().streams]
+
+
 @cache
 def without_swings() -> PyramidModel:
-    streams = [LabelledStream(**{**vars(each), "segments": _others(each)}) for each in taught().streams]
-    model = train_to_spot(old_samples(), streams, TINY)
+    model = train_to_spot(old_samples(), streams_without_swings(), TINY)
     assert isinstance(model, PyramidModel)
     return model
 
@@ -135,6 +139,24 @@ def test_a_model_that_keeps_nothing_is_refused() -> None:
         pytest.param(
             lambda kept: kept | {"kept_pooled_directions": kept["kept_pooled_directions"][1:]}, "another", id="shape"
         ),
+        pytest.param(
+            lambda kept: kept | {"kept_stage_0_samples": kept["kept_stage_0_samples"] + 1000},
+            "damaged .*stage_0_samples names samples beyond",
+            id="sample",
+        ),
+        pytest.param(
+            lambda kept: kept | {"kept_window_completeness": kept["kept_window_completeness"][1:]},
+            "damaged .*window_completeness has shape",
+            id="window",
+        ),
+        pytest.param(
+            lambda kept: {n: a for n, a in kept.items() if n != "kept_window_share"}, "damaged", id="missing share"
+        ),
+        pytest.param(
+            lambda kept: {n: a for n, a in kept.items() if not n.startswith("kept_window")},
+            "nothing of its search's training",
+            id="no windows",
+        ),
     ],
 )
 def test_what_does_not_fit_the_model_is_refused(kept: Callable[[Any], Any], said: str) -> None:
@@ -172,8 +194,42 @@ def test_an_update_trains_anew_where_anything_else_has_changed() -> None:
 
 def test_actions_can_be_added_after_an_update_of_the_others() -> None:
     before = without_swings()
-    streams = [LabelledStream(**{**vars(each), "segments": _others(each)}) for each in taught().streams]
-    updated = update(before, old_samples(), streams, TINY, seed=1, kept=before.kept)
+    updated = update(before, old_samples(), streams_without_swings(), TINY, seed=1, kept=before.kept)
     assert isinstance(updated, PyramidModel)
     added = add_to(updated, updated.kept, new_samples(), taught().streams)
     assert named(added) == done() and found(added) == done()
+
+
+def updated_without_kept() -> PyramidModel:
+    """A model of a file that kept nothing, updated: it still finds actions."""
+    updated = update(without_swings(), old_samples(), streams_without_swings(), TINY, seed=1, kept=NOTHING_KEPT)
+    assert isinstance(updated, PyramidModel) and updated.spotting is not None
+    return updated
+
+
+def test_an_update_does_not_lose_the_search_where_nothing_of_it_is_kept() -> None:
+    updated, every = updated_without_kept(), [*old_samples(), *new_samples()]
+    after = update(updated, every, taught().streams, TINY, kept=updated.kept)
+    assert after.id == train_to_spot(every, taught().streams, TINY).id
+    assert after.spotting is not None
+
+
+def test_nothing_is_added_to_a_model_that_keeps_nothing_of_its_search() -> None:
+    updated = updated_without_kept()
+    with pytest.raises(TrainingError, match="nothing of its search's training.*train it again"):
+        add_to(updated, updated.kept, new_samples(), taught().streams)
+
+
+def test_an_update_of_a_model_without_a_search_does_not_add_to_it() -> None:
+    before, every = train(old_samples(), TINY), [*old_samples(), *new_samples()]
+    assert update(before, every, taught().streams, TINY, kept=before.kept).spotting is not None
+
+
+@pytest.mark.parametrize("name", ["kept_pooled_mean", "kept_window_share", "kept_window_completeness"])
+def test_an_update_treats_damaged_arrays_as_none(name: str) -> None:
+    before, every = without_swings(), [*old_samples(), *new_samples()]
+    damaged = {each: array for each, array in before.kept.items() if each != name}
+    same = update(before, old_samples(), streams_without_swings(), TINY, seed=1, kept=damaged)
+    assert same.id == updated_without_kept().id
+    more = update(before, every, taught().streams, TINY, kept=damaged)
+    assert more.id == train_to_spot(every, taught().streams, TINY).id
