@@ -1,6 +1,6 @@
 """Examples are added to a trained model: it knows the new action, keeps its maps, and still knows the others."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -10,16 +10,18 @@ import numpy as np
 import pytest
 
 from actum_model_trainer.provenance import digest_of
-from actum_model_trainer.samples import LabelledStream, SegmentSample
+from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample, samples_from
 from actum_model_trainer.training import TrainingError, add_to, train, train_to_spot, update
-from performers import TINY, TINY_PAPER
+from people import STANDING
+from performers import TINY, TINY_PAPER, posed
+from repeating import eased
 from som_classifier.first_layer import MAP_INPUTS
 from som_classifier.model import NOTHING_KEPT, Model
 from som_classifier.model_loading import kept_in, load_model
 from som_classifier.presets import PRESETS
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.spotted import SpottingOptions
-from unmarked import encoded_live, scene, swings_said_to_be_none, taught
+from unmarked import Act, Scene, bounds_ns, encoded_live, recorded, scene, swings_said_to_be_none, taught
 
 NEW = "swing"
 FEW = 5
@@ -233,3 +235,34 @@ def test_an_update_treats_damaged_arrays_as_none(name: str) -> None:
     assert same.id == updated_without_kept().id
     more = update(before, every, taught().streams, TINY, kept=damaged)
     assert more.id == train_to_spot(every, taught().streams, TINY).id
+
+
+def slow_and_fast(actions: Sequence[str], seed: int, height: float) -> Scene:
+    """Swings last half a second, everything else two seconds and a half."""
+    rng = np.random.default_rng(seed)
+    joints, acts = [], []
+    for action in actions:
+        joints += [(STANDING + rng.normal(0, 0.0005, (15, 3))) * height for _ in range(30)]
+        frames = int((15 if action == NEW else 75) * rng.uniform(0.85, 1.15))
+        acts.append(Act(len(joints), len(joints) + frames - 1, action))
+        joints += [posed(action, phase, height, rng) for phase in eased(frames)]
+    joints += [(STANDING + rng.normal(0, 0.0005, (15, 3))) * height for _ in range(30)]
+    return Scene(np.array(joints), tuple(acts))
+
+
+def test_an_added_action_that_is_much_shorter_than_the_others_is_found(tmp_path: Path) -> None:
+    def shown(name: str, actions: Sequence[str]) -> Samples:
+        scenes = [slow_and_fast(actions, seed, height) for seed, height in ((1, 0.95), (2, 1.1))]
+        return samples_from(
+            [recorded(tmp_path, f"{name}{n}", [*of.skeletons(), *of.marks()], str(n)) for n, of in enumerate(scenes)]
+        )
+
+    old, new = shown("old", ("lift", "push") * 6), shown("new", (NEW,) * 5)
+    before = train_to_spot(old.usable, old.streams, TINY)
+    added = add_to(before, before.kept, new.usable, new.streams)
+    [spotter] = added.spotters([SpottingOptions()])
+    test = slow_and_fast(("lift", NEW, "push", NEW), 9, 1.0)
+    segments = [each for frame in encoded_live(added, test) for each in spotter.step(frame).segments]
+    for start_ns, end_ns, action in bounds_ns(test.acts):
+        middles_ns = [(each.start_ns + each.end_ns) / 2 for each in segments if each.label == action]
+        assert any(start_ns <= middle_ns <= end_ns for middle_ns in middles_ns)
