@@ -40,7 +40,7 @@ def train(
         TrainingError: fewer than two actions among the samples, or all samples move alike.
     """
     taught = Taught.of(samples, people_prefer_one_hand(samples), preset, seed)
-    first = _first_maps(_some(taught.augmented), preset, taught.rng, progress)
+    first = _first_maps(_some(taught), preset, taught.rng, progress)
     return train_above(first, taught, background, preset, seed, progress)
 
 
@@ -81,10 +81,10 @@ def _moved(model: PyramidModel, kept: Arrays, above: PyramidModel) -> Arrays:
         return NOTHING_KEPT
 
 
-def _some(augmented: Sequence[Sequence[Variant]]) -> list[Variant]:
-    """Return the variants of as many samples, spread evenly, as have about `MOST_FRAMES` frames."""
-    frames = sum(len(of_sample) * len(of_sample[0].measured[0]) for of_sample in augmented)
-    return [variant for of_sample in augmented[:: -(-frames // MOST_FRAMES)] for variant in of_sample]
+def _some(taught: Taught) -> list[Variant]:
+    """Return the variants of as many samples, spread evenly over the actions, as have about `MOST_FRAMES` frames."""
+    frames = sum(len(of_sample) * len(of_sample[0].measured[0]) for of_sample in taught.augmented)
+    return [variant for number in taught.every(-(-frames // MOST_FRAMES)) for variant in taught.augmented[number]]
 
 
 def _first_maps(
