@@ -125,6 +125,7 @@ def _joined(before: TrainingData, new: _Measured) -> TrainingData:
             for one, other in zip(before.stages, new.stages, strict=True)
         ],
         _padded(before.background, pooled),
+        before.background_digest,
         replace(before.convolved, taught=taught, background=background),
         pooled,
         convolved,

@@ -12,7 +12,7 @@ from actum_model_trainer.basis import Basis
 from actum_model_trainer.convolution_training import Convolved
 from actum_model_trainer.pooling import MAX_VECTORS, PooledVectors, Pooling
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.provenance import actions_of
+from actum_model_trainer.provenance import actions_of, digest_of_streams
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.training_data import SampleMeasures, TrainingData, duration_s
 from som_classifier.first_layer import FirstMaps
@@ -83,8 +83,8 @@ def gathered(
     if pooling.basis is not None:
         basis = Basis.of(convolved.taught, MANY_DIRECTIONS)
         convolved = convolved.in_basis(basis)
-    measures = SampleMeasures.of(taught.samples, first, taught.measured)
-    return TrainingData(measures, pooled, pooling.of_background(*strange), convolved, pooling.basis, basis)
+    measures, digest = SampleMeasures.of(taught.samples, first, taught.measured), digest_of_streams(background)
+    return TrainingData(measures, pooled, pooling.of_background(*strange), digest, convolved, pooling.basis, basis)
 
 
 def _basis_of_some(pooling: Pooling, taught: Taught, preset: PyramidPreset) -> Basis:

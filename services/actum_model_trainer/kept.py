@@ -38,11 +38,13 @@ class KeptWindows:
         coordinates: (n, rank), of the windows' pooled vectors.
         completeness: (n, actions), what the heads are to answer.
         share: of the common head in each action's own.
+        digest: of the streams without an action that the search learnt from.
     """
 
     coordinates: NDArray[np.float32]
     completeness: Array
     share: float
+    digest: str
 
     @classmethod
     def of(cls, arrays: Arrays, model: PyramidModel) -> "KeptWindows":
@@ -56,10 +58,10 @@ class KeptWindows:
         with _naming_damage():
             coordinates = arrays[f"{KEPT}window_coordinates"].astype(np.float32)
             completeness = arrays[f"{KEPT}window_completeness"].astype(np.float64)
-            share = float(arrays[f"{KEPT}window_share"])
+            share, digest = float(arrays[f"{KEPT}window_share"]), str(arrays[f"{KEPT}window_digest"])
             _expect("window_coordinates", coordinates, (len(coordinates), pooled_basis(arrays).rank))
             _expect("window_completeness", completeness, (len(coordinates), len(model.labels)))
-        return cls(coordinates, completeness, share)
+        return cls(coordinates, completeness, share, digest)
 
     def moved(self, before: Basis, to: Basis) -> "KeptWindows":
         """Return the windows with coordinates in another basis."""
@@ -74,7 +76,7 @@ class KeptWindows:
     def and_also(self, coordinates: NDArray[np.float32], completeness: Array) -> "KeptWindows":
         """Append windows."""
         joined = np.concatenate([self.coordinates, coordinates]), np.concatenate([self.completeness, completeness])
-        return KeptWindows(*joined, self.share)
+        return KeptWindows(*joined, self.share, self.digest)
 
     @property
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -83,6 +85,7 @@ class KeptWindows:
             f"{KEPT}window_coordinates": _coarse(self.coordinates),
             f"{KEPT}window_completeness": self.completeness.astype(COARSE),
             f"{KEPT}window_share": np.array(self.share),
+            f"{KEPT}window_digest": np.array(self.digest),
         }
 
 
@@ -111,6 +114,7 @@ def kept_arrays(data: TrainingData) -> dict[str, NDArray[Any]]:
         **_basis_arrays("pooled", of.pooled_basis),
         **_basis_arrays("convolved", of.convolved_basis),
         "background": _coarse(of.background),
+        "background_digest": np.array(of.background_digest),
         "convolved_taught": _coarse(of.convolved.taught),
         "convolved_background": _coarse(of.convolved.background),
         "convolved_spread": of.convolved.spread,
@@ -186,10 +190,17 @@ def _restored(kept: Mapping[str, NDArray[Any]], model: PyramidModel) -> Training
         SampleMeasures(**{each.name: kept[each.name] for each in fields(SampleMeasures)}),
         stages,
         kept["background"].astype(np.float32),
+        str(kept["background_digest"]),
         Convolved(model.opinion.convolutions, *convolved),
         _restored_basis("pooled", kept),
         _restored_basis("convolved", kept),
     )
+
+
+def learnt_beside(arrays: Arrays) -> tuple[str, ...]:
+    """Return digests of what a model learnt from beside its samples: background and counterexamples; the search's."""
+    names = f"{KEPT}background_digest", f"{KEPT}window_digest"
+    return tuple(str(arrays[name]) for name in names if name in arrays)
 
 
 def pooled_basis(arrays: Arrays) -> Basis:

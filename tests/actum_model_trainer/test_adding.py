@@ -189,9 +189,40 @@ def test_an_update_trains_anew_where_anything_else_has_changed() -> None:
     before, every = without_swings(), [*old_samples(), *new_samples()]
     corrected = update(before, every[1:], taught().streams, TINY, kept=before.kept)
     assert corrected.id == train_to_spot(every[1:], taught().streams, TINY).id
+
+
+def background_take() -> LabelledStream:
+    """A stream in which nothing is labelled."""
+    return replace(taught().streams[0], file="background.mcap", segments=(), person="9")
+
+
+def test_an_update_trains_anew_where_background_or_counterexamples_have_come() -> None:
+    before, every = without_swings(), [*old_samples(), *new_samples()]
+    for beside in (swings_said_to_be_none(), (background_take(),)):
+        streams = [*taught().streams, *beside]
+        after = update(before, every, streams, TINY, kept=before.kept)
+        assert after.id == train_to_spot(every, streams, TINY).id
+
+
+def test_an_update_trains_anew_where_counterexamples_are_gone() -> None:
+    before = train_to_spot(old_samples(), [*streams_without_swings(), *swings_said_to_be_none()], TINY)
+    every = [*old_samples(), *new_samples()]
+    after = update(before, every, taught().streams, TINY, kept=before.kept)
+    assert after.id == train_to_spot(every, taught().streams, TINY).id
+
+
+def test_an_update_adds_where_background_and_counterexamples_are_as_they_were() -> None:
+    beside = [background_take(), *(replace(each, file="none.mcap") for each in swings_said_to_be_none()[:2])]
+    before = train_to_spot(old_samples(), [*streams_without_swings(), *beside], TINY)
+    every = [*old_samples(), *new_samples()]
+    after = update(before, every, [*taught().streams, *beside], TINY, kept=before.kept)
+    assert isinstance(after, PyramidModel) and after.metadata.updated_from == before.id
+
+
+def test_segments_of_none_of_the_actions_cannot_be_added() -> None:
     streams = [*taught().streams, *swings_said_to_be_none()]
-    with_counterexamples = update(before, every, streams, TINY, kept=before.kept)
-    assert with_counterexamples.id == train_to_spot(every, streams, TINY).id
+    with pytest.raises(TrainingError, match="contains segments labelled none, which cannot be added"):
+        add_to(without_swings(), without_swings().kept, new_samples(), streams)
 
 
 def test_actions_can_be_added_after_an_update_of_the_others() -> None:
