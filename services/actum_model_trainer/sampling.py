@@ -81,8 +81,8 @@ class Sampling:
         if (segments, frames) == (self.read.total(), self.frames_read):
             return None
         return (
-            f"training uses {segments} of {self.read.total()} labelled segments and {frames} of {self.frames_read} "
-            "frames of whole recordings, drawn evenly: more would not fit into memory"
+            f"Training uses {segments} of {self.read.total()} labelled segments and {frames} of {self.frames_read} "
+            "frames of whole recordings, drawn evenly: more would not fit into memory."
         )
 
     def _drop_segments(self) -> None:
