@@ -17,12 +17,12 @@ def test_vectors_that_a_basis_holds_already_add_no_direction() -> None:
     assert basis.extended(vectors(1, 6), 20).rank == basis.rank == 6
 
 
-@pytest.mark.parametrize("scale", [1.0, 3e-2])
+@pytest.mark.parametrize("scale", [1.0, 1e-2])
 def test_added_directions_are_orthogonal_to_those_before_also_where_they_matter_little(scale: float) -> None:
     basis = Basis.of(vectors(1, 6), 20)
     extended = basis.extended(vectors(1, 6) + vectors(2, 3, scale) - 5, 20)
     assert extended.rank == 9
-    np.testing.assert_allclose(extended.directions.T @ extended.directions, np.eye(9), atol=2e-5)
+    np.testing.assert_allclose(extended.directions.T @ extended.directions, np.eye(9), atol=2e-6)
 
 
 def test_differences_of_rounding_add_no_direction() -> None:
