@@ -69,13 +69,18 @@ def few_of(samples: Sequence[SegmentSample]) -> list[SegmentSample]:
 
 @dataclass(frozen=True)
 class Row:
-    """What one action gives: both models' accuracy on all tests and on the action's own, and the time of adding."""
+    """What one action gives: both models' accuracy on all tests and on the action's own, and the time of adding.
+
+    `unknown` and `unknown_others` are shares that the model with the added action calls unknown: of the tests of this
+    action, and of the others.
+    """
 
     anew: float
     added: float
     anew_own: float
     added_own: float
     unknown: float
+    unknown_others: float
     adding_s: float
 
 
@@ -92,9 +97,10 @@ def rows(of: Set, samples: Sequence[SegmentSample]) -> Iterator[Row]:
         adding_s = time.process_time() - began_s
         own = np.array([sample.label == label for sample in test])
         right_anew, right = (right_of(model, test) for model in (anew, added))
-        unknown = [answer(added, encoded(added, sample)).unknown for sample in test if sample.label == label]
+        unknown = np.array([answer(added, encoded(added, sample)).unknown for sample in test])
         own_anew, own_added = right_anew[own].mean(), right[own].mean()
-        yield Row(right_anew.mean(), right.mean(), own_anew, own_added, float(np.mean(unknown)), adding_s)
+        called = float(unknown[own].mean()), float(unknown[~own].mean())
+        yield Row(right_anew.mean(), right.mean(), own_anew, own_added, *called, adding_s)
 
 
 def right_of(model: Model, test: Sequence[SegmentSample]) -> np.ndarray:
@@ -106,8 +112,9 @@ def main() -> None:
     """Measure the sets asked for, and print a table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.adding", description=__doc__)
     parser.add_argument("sets", nargs="*", default=list(SETS), metavar="SET")
-    print("| set | anew | added | difference, points | own action: anew | added | called unknown | adding, s |")
-    print("|---|---|---|---|---|---|---|---|", flush=True)
+    own = "own action: anew | added | called unknown"
+    print(f"| set | anew | added | difference, points | {own} | others: called unknown | adding, s |")
+    print("|---|---|---|---|---|---|---|---|---|", flush=True)
     for name in parser.parse_args().sets:
         with tempfile.TemporaryDirectory() as folder, at_most(1):
             SETS[name].write(Path(folder) / name)
@@ -119,7 +126,7 @@ def line(name: str, found: Sequence[Row]) -> str:
     """Write a set's means over the actions, and the mean difference with its standard error."""
     differences = 100 * np.array([row.added - row.anew for row in found])
     error = differences.std(ddof=1) / np.sqrt(len(found))
-    fields = ("anew", "added", "anew_own", "added_own", "unknown")
+    fields = ("anew", "added", "anew_own", "added_own", "unknown", "unknown_others")
     anew, added, *others = (f"{100 * np.mean([getattr(row, field) for row in found]):.1f}" for field in fields)
     seconds = f"{np.mean([row.adding_s for row in found]):.2f}"
     return f"| {' | '.join([name, anew, added, f'{differences.mean():+.1f} ± {error:.1f}', *others, seconds])} |"

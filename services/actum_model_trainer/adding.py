@@ -59,18 +59,20 @@ def add(
         progress: of the fitting.
 
     Raises:
-        TrainingError: there is no example, or nothing that fits the model is kept.
+        TrainingError: there is no example.
+        KeptError: nothing that fits the model is kept, of its maps' training or of its search's.
     """
     if not samples:
         raise TrainingError("the recordings contain no usable examples to add: record examples of a new action")
     known, rng = model.metadata, np.random.default_rng(seed)
     as_known = replace(preset, levels=tuple(known.levels), overlap=known.overlap, epochs=min(preset.epochs, EPOCHS))
-    before, windows = kept_data(kept, model), KeptWindows.of(kept)
+    before = kept_data(kept, model)
+    windows = None if known.spotting is None else KeptWindows.of(kept, model)
     data = _joined(before, _Measured.of(model, before.measures, samples, as_known, rng))
     origin = _origin(known, data) | {"data_digest": digest, "updated_from": model.id}
     above = fitted_model(model.first, data, origin, as_known, rng, progress)
     added = replace(with_what_was_left_out(above, model, before, as_known), kept=kept_arrays(data))
-    if known.spotting is None or windows is None:
+    if windows is None:
         return added
     moved = windows.moved(pooled_basis(kept), pooled_basis(added.kept))
     return with_added_heads(model, added, moved, streams, as_known, rng, progress)
@@ -123,6 +125,7 @@ def _joined(before: TrainingData, new: _Measured) -> TrainingData:
             for one, other in zip(before.stages, new.stages, strict=True)
         ],
         _padded(before.background, pooled),
+        before.background_digest,
         replace(before.convolved, taught=taught, background=background),
         pooled,
         convolved,

@@ -16,6 +16,8 @@ LANDMARKS = 2
 """Vectors that each direction is found from: more show the directions hardly better, and n vectors cost n³."""
 SMALLEST_SHARE = 1e-6
 """Share of the landmarks' largest variance below which a direction is rounding error."""
+LEAST_NEW_SHARE = 1e-5
+"""Share of the variance of all vectors below which a direction that a basis lacks is what rounding left of others."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,10 +45,15 @@ class Basis:
         return cls(mean, _principal(landmarks - mean, rank))
 
     def extended(self, vectors: Floats32, most: int) -> "Basis":
-        """Append the principal directions of what vectors (n, inputs) have beside these, at most so many."""
-        centred = _spread(vectors, most) - self.mean
-        beside = centred - (centred @ self.directions) @ self.directions.T
-        return Basis(self.mean, np.hstack([self.directions, _principal(beside, most)]))
+        """Append the principal directions of what vectors (n, inputs) have beside these, at most so many.
+
+        What they have is projected out twice: once leaves so much by rounding that directions would not be orthogonal.
+        """
+        beside = centred = _spread(vectors, most) - self.mean
+        for _ in range(2):
+            beside = beside - (beside @ self.directions) @ self.directions.T
+        least = LEAST_NEW_SHARE * float(np.square(centred, dtype=np.float64).sum())
+        return Basis(self.mean, np.hstack([self.directions, _principal(beside, most, least)]))
 
     def first(self, rank: int) -> "Basis":
         """Return the first directions alone."""
@@ -75,9 +82,12 @@ def _spread(vectors: Floats32, rank: int) -> Floats32:
     return vectors[np.linspace(0, len(vectors) - 1, min(len(vectors), LANDMARKS * rank)).round().astype(np.intp)]
 
 
-def _principal(centred: NDArray[np.floating[Any]], most: int) -> Floats32:
-    """Return the principal directions of centred vectors (n, inputs), at most so many, (inputs, directions)."""
+def _principal(centred: NDArray[np.floating[Any]], most: int, least: float = 0.0) -> Floats32:
+    """Return the principal directions of centred vectors (n, inputs), at most so many, (inputs, directions).
+
+    `least` is the smallest sum of squares along a direction.
+    """
     variances, combinations = np.linalg.eigh((centred @ centred.T).astype(np.float64))
-    kept = np.flatnonzero(variances > SMALLEST_SHARE * variances[-1])[::-1][:most]
+    kept = np.flatnonzero(variances > max(SMALLEST_SHARE * variances[-1], least))[::-1][:most]
     directions: Floats32 = centred.T @ (combinations[:, kept] / np.sqrt(variances[kept])).astype(np.float32)
     return directions

@@ -44,7 +44,7 @@ class Convolved:
 
     Attributes:
         convolutions: that give them.
-        spread: (features,), the standard deviations.
+        spread: (features,), the standard deviations, 1 of constants.
         taught: (n, features).
         background: (m, features).
     """
@@ -63,7 +63,7 @@ class Convolved:
         convolutions = drawn_convolutions(series, biases, rng)
         features = np.stack([convolutions.features(each) for each in series])
         spread = features.std(axis=0)
-        spread[spread == 0] = 1.0
+        spread[np.ptp(features, axis=0) == 0] = 1.0  # rounding makes the deviation of some constants 3e-8
         beside = np.array([convolutions.features(resampled(each)) for each in background], np.float32)
         return cls(convolutions, spread, features / spread, beside.reshape(-1, len(spread)) / spread)
 

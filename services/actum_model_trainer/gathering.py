@@ -12,7 +12,7 @@ from actum_model_trainer.basis import Basis
 from actum_model_trainer.convolution_training import Convolved
 from actum_model_trainer.pooling import MAX_VECTORS, PooledVectors, Pooling
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.provenance import actions_of
+from actum_model_trainer.provenance import actions_of, digest_of_streams
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.training_data import SampleMeasures, TrainingData, duration_s
 from som_classifier.first_layer import FirstMaps
@@ -54,6 +54,11 @@ class Taught:
         augmented = [list(variants(sample, augmentation, mirrors, rng)) for sample in samples]
         return cls(samples, mirrors, augmented, rng)
 
+    def every(self, stride: int) -> list[int]:
+        """Return the numbers of every so many samples, in order, spread evenly over each action's."""
+        by_action = sorted(range(len(self.samples)), key=lambda number: self.samples[number].label)
+        return sorted(by_action[::stride])
+
     @property
     def measured(self) -> list[Floats]:
         """The postures of each sample as measured."""
@@ -78,15 +83,15 @@ def gathered(
     if pooling.basis is not None:
         basis = Basis.of(convolved.taught, MANY_DIRECTIONS)
         convolved = convolved.in_basis(basis)
-    measures = SampleMeasures.of(taught.samples, first, taught.measured)
-    return TrainingData(measures, pooled, pooling.of_background(*strange), convolved, pooling.basis, basis)
+    measures, digest = SampleMeasures.of(taught.samples, first, taught.measured), digest_of_streams(background)
+    return TrainingData(measures, pooled, pooling.of_background(*strange), digest, convolved, pooling.basis, basis)
 
 
 def _basis_of_some(pooling: Pooling, taught: Taught, preset: PyramidPreset) -> Basis:
-    """Find the directions of all stages' vectors from samples that are spread evenly."""
-    every = -(-len(taught.samples) * len(preset.stages) // (2 * MANY_DIRECTIONS))
-    some, beside = taught.samples[::every], len(taught.samples)
-    landmarks = pooling.vectors(some, taught.augmented[::every], preset.stages, beside)
+    """Find the directions of all stages' vectors from samples that are spread evenly over the actions."""
+    some = taught.every(-(-len(taught.samples) * len(preset.stages) // (2 * MANY_DIRECTIONS)))
+    samples, augmented = [taught.samples[each] for each in some], [taught.augmented[each] for each in some]
+    landmarks = pooling.vectors(samples, augmented, preset.stages, beside=len(taught.samples))
     return Basis.of(np.concatenate([stage.vectors for stage in landmarks]), MANY_DIRECTIONS)
 
 

@@ -4,7 +4,8 @@ The arrays' names begin with `som_classifier.model.KEPT`. A classifier does not 
 model's id.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -15,7 +16,7 @@ from actum.arrays import Array
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.convolution_training import Convolved
 from actum_model_trainer.pooling import PooledVectors
-from actum_model_trainer.provenance import TrainingError
+from actum_model_trainer.provenance import KeptError
 from actum_model_trainer.training_data import SampleMeasures, TrainingData
 from som_classifier.model import KEPT, Arrays
 from som_classifier.pyramid_model import PyramidModel
@@ -37,20 +38,30 @@ class KeptWindows:
         coordinates: (n, rank), of the windows' pooled vectors.
         completeness: (n, actions), what the heads are to answer.
         share: of the common head in each action's own.
+        digest: of the streams without an action that the search learnt from.
     """
 
     coordinates: NDArray[np.float32]
     completeness: Array
     share: float
+    digest: str
 
     @classmethod
-    def of(cls, arrays: Arrays) -> "KeptWindows | None":
-        """Return what a model keeps of its search's training; None where it keeps nothing of that."""
-        coordinates = arrays.get(f"{KEPT}window_coordinates")
-        if coordinates is None:
-            return None
-        completeness = arrays[f"{KEPT}window_completeness"].astype(np.float64)
-        return cls(coordinates.astype(np.float32), completeness, float(arrays[f"{KEPT}window_share"]))
+    def of(cls, arrays: Arrays, model: PyramidModel) -> "KeptWindows":
+        """Return what a model with a search keeps of the search's training.
+
+        Raises:
+            KeptError: it keeps nothing of that, or it is damaged.
+        """
+        if f"{KEPT}window_coordinates" not in arrays:
+            raise KeptError(f"the model keeps nothing of its search's training, so nothing can be added: {TRAIN_AGAIN}")
+        with _naming_damage():
+            coordinates = arrays[f"{KEPT}window_coordinates"].astype(np.float32)
+            completeness = arrays[f"{KEPT}window_completeness"].astype(np.float64)
+            share, digest = float(arrays[f"{KEPT}window_share"]), str(arrays[f"{KEPT}window_digest"])
+            _expect("window_coordinates", coordinates, (len(coordinates), pooled_basis(arrays).rank))
+            _expect("window_completeness", completeness, (len(coordinates), len(model.labels)))
+        return cls(coordinates, completeness, share, digest)
 
     def moved(self, before: Basis, to: Basis) -> "KeptWindows":
         """Return the windows with coordinates in another basis."""
@@ -65,7 +76,7 @@ class KeptWindows:
     def and_also(self, coordinates: NDArray[np.float32], completeness: Array) -> "KeptWindows":
         """Append windows."""
         joined = np.concatenate([self.coordinates, coordinates]), np.concatenate([self.completeness, completeness])
-        return KeptWindows(*joined, self.share)
+        return KeptWindows(*joined, self.share, self.digest)
 
     @property
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -74,6 +85,7 @@ class KeptWindows:
             f"{KEPT}window_coordinates": _coarse(self.coordinates),
             f"{KEPT}window_completeness": self.completeness.astype(COARSE),
             f"{KEPT}window_share": np.array(self.share),
+            f"{KEPT}window_digest": np.array(self.digest),
         }
 
 
@@ -102,6 +114,7 @@ def kept_arrays(data: TrainingData) -> dict[str, NDArray[Any]]:
         **_basis_arrays("pooled", of.pooled_basis),
         **_basis_arrays("convolved", of.convolved_basis),
         "background": _coarse(of.background),
+        "background_digest": np.array(of.background_digest),
         "convolved_taught": _coarse(of.convolved.taught),
         "convolved_background": _coarse(of.convolved.background),
         "convolved_spread": of.convolved.spread,
@@ -116,20 +129,54 @@ def kept_data(arrays: Arrays, model: PyramidModel) -> TrainingData:
     """Return the training data that a model keeps.
 
     Raises:
-        TrainingError: it keeps none, or they are another model's.
+        KeptError: it keeps none, or they are damaged or another model's.
     """
     if not arrays:
-        raise TrainingError(f"the model keeps nothing of its training, so no action can be added to it: {TRAIN_AGAIN}")
-    try:
+        raise KeptError(f"the model keeps nothing of its training, so no action can be added to it: {TRAIN_AGAIN}")
+    with _naming_damage():
         data = _restored({name.removeprefix(KEPT): array for name, array in arrays.items()}, model)
-    except (KeyError, ValueError, IndexError) as error:
-        raise TrainingError(f"what the model keeps of its training is damaged ({error}): {TRAIN_AGAIN}") from None
-    pooled, features = data.pooled_basis, data.convolved_basis
-    assert pooled is not None and features is not None
-    inputs = len(pooled.directions), len(features.directions)
-    if data.labels != model.labels or inputs != (model.stages.axes.shape[1], len(model.opinion.axes)):
-        raise TrainingError(f"what the model keeps of its training belongs to another model: {TRAIN_AGAIN}")
+        pooled, features = data.pooled_basis, data.convolved_basis
+        assert pooled is not None and features is not None
+        inputs = len(pooled.directions), len(features.directions)
+        if data.labels != model.labels or inputs != (model.stages.axes.shape[1], len(model.opinion.axes)):
+            raise KeptError(f"what the model keeps of its training belongs to another model: {TRAIN_AGAIN}")
+        _expect_whole(data, pooled, features)
     return data
+
+
+def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
+    """Check that restored arrays fit one another.
+
+    Raises:
+        ValueError: one does not.
+    """
+    count, last = len(data.measures.labels), len(data.stages[-1].vectors)
+    for name, array in vars(data.measures).items():
+        _expect(name, array, (count, *array.shape[1:]))
+    for number, (vectors, samples, _) in enumerate(data.stages):
+        _expect(f"stage_{number}", vectors, (len(samples), pooled.rank))
+        if np.setdiff1d(samples, np.arange(count)).size:
+            raise ValueError(f"stage_{number}_samples names samples beyond the {count} that there are")
+    _expect("background", data.background, (len(data.background), pooled.rank))
+    _expect("convolved_spread", data.convolved.spread, (len(features.directions),))
+    _expect("convolved_taught", data.convolved.taught, (last, features.rank))
+    _expect("convolved_background", data.convolved.background, (len(data.background), features.rank))
+
+
+def _expect(name: str, array: NDArray[Any], shape: tuple[int, ...]) -> None:
+    if array.shape != shape:
+        raise ValueError(f"{name} has shape {array.shape}, not {shape}")
+
+
+@contextmanager
+def _naming_damage() -> Iterator[None]:
+    """Raise a `KeptError` for arrays that are missing or do not fit."""
+    try:
+        yield
+    except KeptError:
+        raise
+    except (KeyError, ValueError, IndexError, TypeError) as error:
+        raise KeptError(f"what the model keeps of its training is damaged ({error}): {TRAIN_AGAIN}") from None
 
 
 def _restored(kept: Mapping[str, NDArray[Any]], model: PyramidModel) -> TrainingData:
@@ -143,10 +190,17 @@ def _restored(kept: Mapping[str, NDArray[Any]], model: PyramidModel) -> Training
         SampleMeasures(**{each.name: kept[each.name] for each in fields(SampleMeasures)}),
         stages,
         kept["background"].astype(np.float32),
+        str(kept["background_digest"]),
         Convolved(model.opinion.convolutions, *convolved),
         _restored_basis("pooled", kept),
         _restored_basis("convolved", kept),
     )
+
+
+def learnt_beside(arrays: Arrays) -> tuple[str, ...]:
+    """Return digests of what a model learnt from beside its samples: background and counterexamples; the search's."""
+    names = f"{KEPT}background_digest", f"{KEPT}window_digest"
+    return tuple(str(arrays[name]) for name in names if name in arrays)
 
 
 def pooled_basis(arrays: Arrays) -> Basis:

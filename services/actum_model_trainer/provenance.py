@@ -8,12 +8,16 @@ from typing import Any
 import numpy as np
 
 import actum
-from actum_model_trainer.samples import SegmentSample
+from actum_model_trainer.samples import LabelledStream, SegmentSample
 from som_classifier.presets import Preset
 
 
 class TrainingError(ValueError):
     """No model can be trained on these samples."""
+
+
+class KeptError(TrainingError):
+    """What a model keeps of its training is missing, damaged or another model's: no example can be added to it."""
 
 
 def actions_of(samples: Sequence[SegmentSample]) -> list[str]:
@@ -51,5 +55,15 @@ def digest_of(samples: Sequence[SegmentSample]) -> str:
     for sample in samples:
         digest.update(f"{sample.label}\0{sample.person}\0{sample.joints.shape}\0{sample.depth_inferred}".encode())
         for values in (sample.stamps_ns, sample.joints, sample.motion, sample.postures, sample.velocities):
+            digest.update(np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()
+
+
+def digest_of_streams(streams: Sequence[LabelledStream]) -> str:
+    """Return the SHA-256 (hexadecimal) over all fields of streams that a training reads, in their order."""
+    digest = hashlib.sha256()
+    for stream in streams:
+        digest.update(f"{stream.segments}\0{stream.person}\0{stream.depth_inferred}".encode())
+        for values in (stream.stamps_ns, stream.motion, stream.postures, stream.velocities):
             digest.update(np.ascontiguousarray(values).tobytes())
     return digest.hexdigest()

@@ -16,9 +16,10 @@ from actum_model_trainer.kept import KeptWindows, pooled_basis
 from actum_model_trainer.layers_above import train_above
 from actum_model_trainer.median_distances import median_quantization_error2
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import KeptError
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from som_classifier.first_layer import MAP_INPUTS, FirstMaps, frame_inputs
-from som_classifier.model import Arrays
+from som_classifier.model import NOTHING_KEPT, Arrays
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 
@@ -39,7 +40,7 @@ def train(
         TrainingError: fewer than two actions among the samples, or all samples move alike.
     """
     taught = Taught.of(samples, people_prefer_one_hand(samples), preset, seed)
-    first = _first_maps(_some(taught.augmented), preset, taught.rng, progress)
+    first = _first_maps(_some(taught), preset, taught.rng, progress)
     return train_above(first, taught, background, preset, seed, progress)
 
 
@@ -66,15 +67,24 @@ def update(
     taught = Taught.of(samples, known.mirrors, as_known, seed)
     above = train_above(model.first, taught, background, as_known, seed, progress)
     metadata = above.metadata.model_copy(update={"spotting": known.spotting, "updated_from": model.id})
-    windows = KeptWindows.of(kept)
-    moved = {} if windows is None else windows.moved(pooled_basis(kept), pooled_basis(above.kept)).arrays
-    return replace(above, heads=model.heads, metadata=metadata, kept={**above.kept, **moved})
+    return replace(above, heads=model.heads, metadata=metadata, kept={**above.kept, **_moved(model, kept, above)})
 
 
-def _some(augmented: Sequence[Sequence[Variant]]) -> list[Variant]:
-    """Return the variants of as many samples, spread evenly, as have about `MOST_FRAMES` frames."""
-    frames = sum(len(of_sample) * len(of_sample[0].measured[0]) for of_sample in augmented)
-    return [variant for of_sample in augmented[:: -(-frames // MOST_FRAMES)] for variant in of_sample]
+def _moved(model: PyramidModel, kept: Arrays, above: PyramidModel) -> Arrays:
+    """Return what is kept of the search's training, for a model whose layers above the maps are others.
+
+    Without it, or where it is damaged, the model finds the same as before, but no action can be added to it.
+    """
+    try:
+        return KeptWindows.of(kept, model).moved(pooled_basis(kept), pooled_basis(above.kept)).arrays
+    except KeptError:
+        return NOTHING_KEPT
+
+
+def _some(taught: Taught) -> list[Variant]:
+    """Return the variants of as many samples, spread evenly over the actions, as have about `MOST_FRAMES` frames."""
+    frames = sum(len(of_sample) * len(of_sample[0].measured[0]) for of_sample in taught.augmented)
+    return [variant for number in taught.every(-(-frames // MOST_FRAMES)) for variant in taught.augmented[number]]
 
 
 def _first_maps(

@@ -2,16 +2,19 @@
 
 import hashlib
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from typing import Any
 
 from threadpoolctl import threadpool_limits
 
+from actum.messages import NONE
 from actum_model_trainer import adding, paper_training, pyramid_training
 from actum_model_trainer.background import counterexamples, shipped
+from actum_model_trainer.kept import learnt_beside
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.provenance import TrainingError, actions_of, digest_of
+from actum_model_trainer.provenance import KeptError, TrainingError, actions_of, digest_of, digest_of_streams
 from actum_model_trainer.samples import LabelledStream, SegmentSample
-from actum_model_trainer.spotting.spotting_training import with_spotting
+from actum_model_trainer.spotting.spotting_training import digest_of_background, with_spotting
 from som_classifier.model import NOTHING_KEPT, Arrays, Model
 from som_classifier.presets import PRESETS, Preset
 
@@ -97,9 +100,11 @@ def update(
 ) -> Model:
     """Train a model on samples that include corrections, so that it finds the same segments as before.
 
-    Where nothing but examples of new actions has come since, these are added to the model. A model of another kind than
+    Where nothing but examples of new actions has come since, these are added to the model; other background or
+    counterexamples than those that the model learnt from count as something else. A model of another kind than
     the preset's, of a kind that cannot be updated, of other actions or without a search is trained anew. The background
-    is that which comes with actum. `kept` is what the model's file keeps of its training.
+    is that which comes with actum. `kept` is what the model's file keeps of its training; where it keeps nothing, or is
+    damaged, nothing is added.
 
     Raises:
         TrainingError: fewer than two actions among the samples.
@@ -107,7 +112,8 @@ def update(
     if new := _added_since(model, kept, samples, streams, preset):
         holding = {sample.file for sample in new}
         more = [each for each in streams if each.file in holding]
-        return _added(model, kept, new, more, digest_of(samples), seed, progress)
+        with suppress(KeptError):
+            return _added(model, kept, new, more, digest_of(samples), seed, progress)
     updating = UPDATES.get(preset.kind)
     alike = model.metadata.kind == preset.kind and model.labels == actions_of(samples)
     if updating is None or not alike or model.spotting is None:
@@ -135,8 +141,14 @@ def add_to(
         progress: of the training.
 
     Raises:
-        TrainingError: the model's kind cannot take examples, nothing is kept, or there is no example.
+        TrainingError: the model's kind cannot take examples, nothing is kept, there is no example, or something is
+            labelled as none of the actions.
     """
+    if of_none := counterexamples(streams):
+        raise TrainingError(
+            f"{of_none[0].file} contains segments labelled {NONE}, which cannot be added to a trained model: train a "
+            "model from all recordings, or delete these segments"
+        )
     digest = hashlib.sha256(f"{model.metadata.data_digest}{digest_of(samples)}".encode()).hexdigest()
     return _added(model, kept, samples, streams, digest, seed, progress)
 
@@ -168,9 +180,16 @@ def _added_since(
     streams: Sequence[LabelledStream],
     preset: Preset,
 ) -> list[SegmentSample]:
-    """Return the examples of new actions, where all others are those that the model was trained on; else none."""
+    """Return the examples of new actions, where all else is as it was when the model was trained; else none.
+
+    All else is the other examples, the background and the counterexamples.
+    """
     before = [sample for sample in samples if sample.label in model.labels]
-    fits = bool(kept) and model.metadata.preset == preset.name and preset.kind in ADDITIONS
-    if not fits or counterexamples(streams) or digest_of(before) != model.metadata.data_digest:
+    new = [sample for sample in samples if sample.label not in model.labels]
+    fits = model.spotting is not None and model.metadata.preset == preset.name and preset.kind in ADDITIONS
+    if not fits or not new or digest_of(before) != model.metadata.data_digest:
         return []
-    return [sample for sample in samples if sample.label not in model.labels]
+    of_new = {sample.file for sample in new}
+    background = digest_of_background([stream for stream in streams if stream.file not in of_new])
+    beside = digest_of_streams([*shipped(), *counterexamples(streams)]), background
+    return new if learnt_beside(kept) == beside else []

@@ -82,6 +82,7 @@ class TrainingData:
         measures: of the samples.
         stages: the pooled vectors of each stage of an action.
         background: (m, inputs), pooled vectors of movement that nobody taught.
+        background_digest: of the streams that this movement was drawn from.
         convolved: the features of the last stage's vectors and of the background.
         pooled_basis: in which the pooled vectors are coordinates; None where they are whole.
         convolved_basis: the same of the features.
@@ -90,6 +91,7 @@ class TrainingData:
     measures: SampleMeasures
     stages: Sequence[PooledVectors]
     background: NDArray[np.float32]
+    background_digest: str
     convolved: Convolved
     pooled_basis: Basis | None = None
     convolved_basis: Basis | None = None

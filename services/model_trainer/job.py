@@ -79,7 +79,8 @@ def print_line(**fields: Any) -> None:
 def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
     """Train a model on a set, or update one; it lies in the folder afterwards."""
     before = None if arguments.model is None else load_model(arguments.model)
-    samples = sampled_from(select([_snapshot(arguments)]), progress).samples
+    sampling = sampled_from(select([_snapshot(arguments)]), progress)
+    samples = sampling.samples
     learnt = samples.usable, samples.streams
     if before is None:
         model = train_to_spot(*learnt, PRESETS[arguments.preset], arguments.seed, progress)
@@ -96,7 +97,7 @@ def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
         "examples": len(samples.usable),
         "left_out": [f"{each.segment_id}: {each.reason}" for each in samples.unusable],
         "scores": {"accuracy_held_out": right / len(answers)} if answers else {},
-        "advice": advice(_contents(arguments, model), answers),
+        "advice": [*filter(None, [sampling.remark]), *advice(_contents(arguments, model), answers)],
     }
 
 

@@ -39,7 +39,7 @@ from performers import mark, performance
 from recognisers import tiny_model
 from som_classifier.attention import PostureInput
 from som_classifier.model_loading import load_model
-from som_classifier.presets import PAPER, PaperPreset
+from som_classifier.presets import DEFAULT, PAPER, PaperPreset
 
 
 def commands_of(group: typer.Typer, words: tuple[str, ...] = ()) -> Iterator[str]:
@@ -205,9 +205,31 @@ def test_examples_are_added_to_a_model_file(examples: Path, tmp_path: Path, monk
     known = load_model(before)
     assert load_model(after).metadata.samples == 2 * known.metadata.samples
     assert f"{2 * known.metadata.samples} samples of {len(known.labels)} actions" in " ".join(added.output.split())
-    said = refused("train", examples, "-o", after, "--add-to", before, "--background", "none")
-    assert "leave out --background and --set" in " ".join(said.split())
     assert str(tmp_path / "no.npz") in refused("train", examples, "-o", after, "--add-to", tmp_path / "no.npz")
+
+
+@pytest.mark.parametrize(
+    ("flags", "named"),
+    [
+        (("--background", "none"), "--background"),
+        (("--preset", DEFAULT.name), "--preset"),
+        (("--preset", "paper", "--set", "axes=posture"), "--preset and --set"),
+    ],
+)
+def test_what_an_addition_keeps_is_refused_as_a_flag_before_anything_is_read(
+    flags: tuple[str, ...], named: str, tmp_path: Path
+) -> None:
+    (tmp_path / "broken.mcap").write_bytes(b"no recording")
+    files = tmp_path / "broken.mcap", "-o", tmp_path / "after.npz", "--add-to", tmp_path / "no.npz"
+    said = " ".join(refused("train", *files, *flags).split())
+    assert said.endswith(f"--add-to keeps the model's preset, settings and background: leave out {named}")
+
+
+def test_the_model_to_add_to_is_loaded_before_recordings(tmp_path: Path) -> None:
+    (tmp_path / "broken.mcap").write_bytes(b"no recording")
+    files = tmp_path / "broken.mcap", "-o", tmp_path / "after.npz", "--add-to", tmp_path / "no.npz"
+    said = refused("train", *files)
+    assert str(tmp_path / "no.npz") in said and "broken" not in said
 
 
 def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:

@@ -1,9 +1,12 @@
 """Of many samples, vectors are kept as coordinates: the model is nearly that of whole vectors, and takes additions."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
 
 from actum_model_trainer import gathering, pooling, pyramid_training
+from actum_model_trainer.gathering import Taught
 from actum_model_trainer.training import add_to, train
 from performers import TINY
 from som_classifier.presets import PRESETS
@@ -12,6 +15,7 @@ from unmarked import encoded_live, scene, taught
 
 FEW = 10
 """Samples beyond which there are many; the set has 36."""
+TAUGHT = ("lift", "push", "swing")
 
 
 @pytest.fixture(autouse=True)
@@ -40,6 +44,27 @@ def test_coordinates_of_many_samples_give_nearly_the_scores_of_vectors(monkeypat
     for name in ("postures", "velocities", "arms"):
         assert np.array_equal(reduced.arrays[name], whole.arrays[name])
     np.testing.assert_allclose(scores(reduced), scores(whole), atol=0.05)
+
+
+def test_samples_are_thinned_out_evenly_over_the_actions_in_whatever_order_they_are_read() -> None:
+    samples = taught().usable
+    assert [each.label for each in samples][:4] == ["lift", "push", "swing", "lift"]
+    of_all = Taught.of(samples, mirrors=False, preset=TINY, seed=0)
+    for stride in (2, 3, 6):
+        numbers = of_all.every(stride)
+        assert Counter(samples[number].label for number in numbers) == dict.fromkeys(TAUGHT, 12 // stride)
+        assert numbers == sorted(numbers)
+    assert of_all.every(1) == list(range(len(samples)))
+
+
+def test_maps_are_trained_on_every_action_although_only_each_third_sample_fits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In the order of reading, every third sample is a lift."""
+    of_all = Taught.of(taught().usable, mirrors=False, preset=TINY, seed=0)
+    frames = sum(len(each) * len(each[0].measured[0]) for each in of_all.augmented)
+    monkeypatch.setattr(pyramid_training, "MOST_FRAMES", frames // 3 + 1)
+    first = {id(each[0]): sample.label for each, sample in zip(of_all.augmented, of_all.samples, strict=True)}
+    some = pyramid_training._some(of_all)
+    assert Counter(first[id(each)] for each in some if id(each) in first) == dict.fromkeys(TAUGHT, 4)
 
 
 def test_examples_can_be_added_to_a_model_of_many_samples(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,14 +3,20 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from actum.messages import NONE
+from actum.node import SECOND_NS
 from actum_model_trainer import sampling
-from actum_model_trainer.samples import Samples, Unusable
+from actum_model_trainer.background import ARRAYS
+from actum_model_trainer.samples import LabelledStream, Samples, Unusable
 from actum_model_trainer.sampling import Sampling, even_quota, pieces
 from unmarked import taught
+
+TAUGHT = ("lift", "push", "swing")
 
 
 def parts(copies: int) -> list[Samples]:
@@ -31,6 +37,19 @@ def kept(of: Sequence[Samples]) -> Sampling:
     for each in of:
         whole.add(each)
     return whole
+
+
+def beginning(frames: int) -> LabelledStream:
+    """The first frames of a stream."""
+    stream = taught().streams[0]
+    arrays = {name: getattr(stream, name)[:frames] for name in ("stamps_ns", *ARRAYS)}
+    return replace(stream, segments=(), **arrays)
+
+
+def shuffled(of: Sequence[Samples]) -> list[list[Samples]]:
+    """The same in twenty orders."""
+    rng = np.random.default_rng(0)
+    return [[of[n] for n in rng.permutation(len(of))] for _ in range(20)]
 
 
 def test_all_that_fits_is_kept_in_its_order() -> None:
@@ -62,6 +81,55 @@ def test_the_order_of_reading_does_not_change_what_is_kept(monkeypatch: pytest.M
     assert names(parts(6)[::-1]) == there
 
 
+def test_the_order_does_not_matter_either_where_the_limit_does_not_divide_evenly(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sampling, "MOST_SEGMENTS", 10)
+    one = taught().usable[0]
+    single = [Samples([replace(one, file=f"{n}-{label}.mcap", label=label)], []) for n in range(5) for label in TAUGHT]
+    selections = {frozenset(each.file for each in kept(of).samples.usable) for of in shuffled(single)}
+    assert [Counter(file[2:-5] for file in each) for each in selections] == [dict.fromkeys(TAUGHT, 3)]
+
+
+def test_the_order_does_not_matter_either_where_a_short_stream_would_fit_in_the_place_of_a_long_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sampling, "MOST_STREAM_FRAMES", 450)
+    for draw in range(20):
+        streams = [Samples([], [replace(beginning(400 if n % 2 else 100), file=f"{draw}-{n}.mcap")]) for n in range(6)]
+        selections = {frozenset(each.file for each in kept(of).samples.streams) for of in shuffled(streams)}
+        assert len(selections) == 1 and all(selections)
+
+
+def test_the_folder_does_not_change_what_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each job reads its set's takes in a folder of its own."""
+    monkeypatch.setattr(sampling, "MOST_SEGMENTS", 30)
+    monkeypatch.setattr(sampling, "MOST_STREAM_FRAMES", 3 * len(taught().streams[0].stamps_ns))
+
+    def names(folder: str) -> list[str]:
+        moved = [
+            Samples(
+                *([replace(each, file=f"{folder}/{each.file}") for each in of] for of in (part.usable, part.streams))
+            )
+            for part in parts(6)
+        ]
+        samples = kept(moved).samples
+        return [f"{Path(each.file).name} {each.label}" for each in samples.usable] + [
+            Path(each.file).name for each in samples.streams
+        ]
+
+    assert names("/data/job-1/takes") == names("/data/job-2/takes")
+
+
+def test_segments_of_none_of_the_actions_take_no_room_from_actions(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sampling, "MOST_SEGMENTS", 18)
+    [part] = parts(1)
+    of_none = [replace(each, label=NONE, segment_id=f"none {n}") for n, each in enumerate(part.usable)]
+    whole = kept([Samples([*of_none, *part.segments], part.streams)])
+    assert len(whole.samples.usable) == 18
+    assert whole.remark is None
+
+
 def test_what_cannot_be_used_is_still_told() -> None:
     whole = kept([Samples([Unusable("a.mcap", "1", "no person", "left")], [])])
     assert [each.reason for each in whole.samples.unusable] == ["no person"]
@@ -85,6 +153,20 @@ def test_a_long_stream_is_cut_between_segments_and_nothing_is_lost(monkeypatch: 
     assert [segment for piece in cut for segment in piece.segments] == list(stream.segments)
     for piece in cut:
         assert all(end_ns <= piece.stamps_ns[-1] for _, end_ns, _ in piece.segments)
+
+
+def test_a_segment_that_begins_where_no_frame_is_is_not_lost_when_a_stream_is_cut(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sampling, "LONGEST_PIECE", 300)
+    stream = taught().streams[0]
+    first_ns = int(stream.stamps_ns[0])
+    early = (first_ns - SECOND_NS, first_ns + SECOND_NS // 10, "lift")
+    after_ns = int(pieces(stream)[0].stamps_ns[-1]) + 1
+    between = (after_ns, after_ns + SECOND_NS // 10, "lift")
+    cut = pieces(replace(stream, segments=tuple(sorted([early, between, *stream.segments]))))
+    assert early in cut[0].segments and between in cut[1].segments
+    assert sum(len(piece.segments) for piece in cut) == len(stream.segments) + 2
 
 
 def test_a_stream_without_a_place_to_cut_is_cut_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,6 +15,7 @@ import pytest
 from actum.commands import Refusal
 from actum.node import SECOND_NS, Counters
 from actum.recorder import is_being_written
+from actum_model_trainer import sampling
 from live import wait_until
 from model_trainer import job
 from model_trainer.job_process import CLAIM, Ended, JobProcess, JobRequest, Progressing
@@ -91,6 +92,16 @@ def test_a_set_is_trained_put_into_use_and_undone(teacher: Teacher, finish: Fini
     assert not teacher.tick().can_undo
     with pytest.raises(Refusal, match="no previous model to return to"):
         teacher.ask("undo")
+
+
+def test_a_job_says_how_much_is_used_where_not_all_fits(
+    teacher: Teacher, finish: Finish, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sampling, "MOST_SEGMENTS", 12)
+    teacher.ask("train", set="kitchen")
+    result = finish()["result"]
+    assert result["examples"] == 12
+    assert result["advice"][0].startswith("Training uses 12 of 20 labelled segments")
 
 
 def test_models_are_compared_and_deleted_but_not_the_one_in_use(teacher: Teacher) -> None:

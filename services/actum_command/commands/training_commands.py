@@ -32,7 +32,7 @@ from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.side_by_side import at_most
 from actum_model_trainer.training import TrainingError, add_to, train_to_spot
 from som_classifier.attention import ATTENTIONS, MOVING
-from som_classifier.model import Model
+from som_classifier.model import Arrays, Model
 from som_classifier.model_loading import ModelError, kept_in, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 from som_classifier.segmentation import Segmentation
@@ -75,6 +75,7 @@ ADD_TO_HELP = (
 
 
 def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
+    context: typer.Context,
     files: Files,
     output: Annotated[Path, typer.Option("-o", "--output", help="the model file to write (.npz)")],
     preset: PresetOption = DEFAULT.name,
@@ -92,25 +93,34 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     began_s = time.monotonic()
     _refuse_place(output, ".npz")
     chosen_preset = preset_named(preset, settings or ())
-    if add_to_model is not None and (background or settings):
-        fail("--add-to keeps the model's background and preset: leave out --background and --set")
+    known = None if add_to_model is None else _known(add_to_model, context)
     recordings = chosen(files, person, with_excluded)
     with failing_on(RecordingError, TrainingError, ModelError, OSError), at_most(jobs):
         samples = _read(recordings)
         with bars() as progress:
-            if add_to_model is None:
+            if known is None:
                 beside = _background(background or [SHIPPED])
                 model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress, beside)
             else:
-                known, kept = load_model(add_to_model), kept_in(add_to_model)
-                model = add_to(known, kept, samples.usable, samples.streams, seed, progress)
+                model = add_to(*known, samples.usable, samples.streams, seed, progress)
         model.save(output)
     say(
         f"model {model.id}: {model.metadata.samples} samples of {len(model.labels)} actions, preset "
         f"{model.metadata.preset}, {time.monotonic() - began_s:.1f} s, written to {output}"
     )
-    if add_to_model is None:
+    if known is None:
         _advise(samples, model)
+
+
+def _known(path: Path, context: typer.Context) -> tuple[Model, Arrays]:
+    """Return the model of `--add-to`, and what its file keeps; fail where a flag asks for something else."""
+    flags = {"preset": "--preset", "settings": "--set", "background": "--background"}
+    sources = {flag: context.get_parameter_source(name) for name, flag in flags.items()}
+    given = [flag for flag, source in sources.items() if source is not None and source.name != "DEFAULT"]
+    if given:
+        fail(f"--add-to keeps the model's preset, settings and background: leave out {' and '.join(given)}")
+    with failing_on(ModelError):
+        return load_model(path), kept_in(path)
 
 
 def _read(recordings: Sequence[Recording]) -> Samples:

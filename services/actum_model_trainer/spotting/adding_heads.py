@@ -99,7 +99,7 @@ def _learned(
     streams: Sequence[LabelledStream],
     preset: PyramidPreset,
 ) -> PyramidSpottingMetadata:
-    """Return the metadata with the durations of new actions; a longer window is added where a new action needs it."""
+    """Return the metadata with the durations of new actions; shorter and longer windows are added for them."""
     of_new = untuned(streams, labels, preset.spotting)
     mean = dict(zip(labels, of_new.log_duration_means, strict=True)) | dict(
         zip(before, known.log_duration_means, strict=True)
@@ -107,12 +107,14 @@ def _learned(
     sd = dict(zip(labels, of_new.log_duration_sds, strict=True)) | dict(
         zip(before, known.log_duration_sds, strict=True)
     )
-    longer = [each for each in of_new.window_durations_s if each > known.window_durations_s[-1]]
+    shortest_s, longest_s = known.window_durations_s[0], known.window_durations_s[-1]
+    shorter = [each for each in of_new.window_durations_s if each < shortest_s]
+    longer = [each for each in of_new.window_durations_s if each > longest_s]
     return known.model_copy(
         update={
             "log_duration_means": [mean[label] for label in labels],
             "log_duration_sds": [sd[label] for label in labels],
-            "window_durations_s": [*known.window_durations_s, *longer[-1:]],
+            "window_durations_s": [*shorter[:1], *known.window_durations_s, *longer[-1:]],
             "background_s": known.background_s + of_new.background_s,
         }
     )

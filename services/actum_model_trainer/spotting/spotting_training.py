@@ -16,6 +16,7 @@ from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import background_min
 from actum_model_trainer.kept import KeptWindows, pooled_basis
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import digest_of_streams
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.common_head import mixed, mixed_heads
 from actum_model_trainer.spotting.heads_training import Folds, window_rows
@@ -75,13 +76,18 @@ def with_spotting(
     threshold = float(averaged_with_prior(choice.threshold, preset.prior.threshold, preset.prior, people))
     learned = before.model_copy(update=choice.stored | {"threshold": threshold, "probability": probability})
     metadata = model.metadata.model_copy(update={"spotting": learned})
-    kept = {**model.kept, **KeptWindows(coordinates, completeness, share).arrays}
+    kept = {**model.kept, **KeptWindows(coordinates, completeness, share, digest_of_background(streams)).arrays}
     return replace(model, heads=mixed_heads(heads.all, share), metadata=metadata, kept=kept)
 
 
 def usable_streams(streams: Sequence[LabelledStream]) -> list[LabelledStream]:
     """Return the streams that the search learns from: not those of counterexamples, nor those of a few frames."""
     return [each for each in streams if len(each.stamps_ns) >= FEWEST_FRAMES and not each.is_counterexample]
+
+
+def digest_of_background(streams: Sequence[LabelledStream]) -> str:
+    """Return the digest of those streams without an action that the search learns from."""
+    return digest_of_streams([each for each in usable_streams(streams) if not each.holds_actions])
 
 
 def _chosen(
