@@ -1,7 +1,7 @@
 """Which of several processes serves a sensor that they share: rendezvous hashing over liveliness tokens.
 
 Each process that may serve the sensor holds the token `member`. The member with the largest hash of its name and the
-sensor's serves it: all members agree without a word, and where one comes or goes, only its own sensors change hands.
+sensor's serves it: all members compute the same result, and if one comes or goes, only its own sensors change hands.
 """
 
 import hashlib

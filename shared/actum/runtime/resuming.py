@@ -106,7 +106,7 @@ class HeardAnswers:
 
 
 def _segment_of(answer: Message) -> Segment:
-    """Return what tells the segment of a final action or an event from all others; of another message, itself."""
+    """Return what tells the segment of a final action or an event from all others; None for any other message."""
     match answer:
         case Action(final=True) | Event():
             return answer.session_id, answer.segment_id, answer.start_ns, answer.end_ns

@@ -38,8 +38,8 @@ class SharingService:
     """Stands by for a sensor, and serves it by a node of its own at each turn.
 
     Args:
-        node: by which the first turn begins, unless it comes late.
-        build: makes the nodes of the turns.
+        node: built at the start, so that wrong settings are refused then; it holds the model in memory until a turn.
+        build: makes the node of each turn.
         settings: of the sensor.
     """
 
