@@ -8,6 +8,7 @@ import numpy as np
 
 from action_fusion.intake.buffers import Sightings
 from action_fusion.intake.stream_samples import ObjectsSample
+from action_fusion.tracks.paths import bounds_m, interpolated
 from actum.arrays import Array, Mask, median
 from actum.node import SECOND_NS
 
@@ -52,8 +53,7 @@ class ObjectTrack:
 
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
-        axes = [np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T]
-        return np.stack(axes, axis=1)
+        return interpolated(stamps_ns, self.stamps_ns, self.positions_m)
 
     def turn(self, moved_m: float) -> int | None:
         """Find the index of the turn of an object that came back: its position in the segment furthest from the start.
@@ -95,7 +95,7 @@ class ObjectTrack:
     @cached_property
     def bounds_m(self) -> Array:
         """The least and the greatest coordinates (2, 3) of the positions."""
-        return np.stack([self.positions_m.min(axis=0), self.positions_m.max(axis=0)])
+        return bounds_m(self.positions_m)
 
     @cached_property
     def extent_m(self) -> float:
