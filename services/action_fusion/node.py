@@ -5,6 +5,8 @@ A stream that stands still, as when a link is cut, is waited for longer than one
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
+from operator import attrgetter
 from typing import Any
 
 from action_fusion.fusion import fuse, rejected
@@ -216,11 +218,8 @@ class ActionFusion:
     def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[PostureBuffer | None, int]]:
         """List the streams of the other people in the image, and the stamp at which each was in it last (ns)."""
         last_ns: dict[int, int] = {}
-        newer: tuple[int, ...] = (agent,)
-        for sample in reversed(postures):
-            if sample.agents != newer:
-                last_ns = dict.fromkeys(sample.agents, sample.stamp_ns) | last_ns
-                newer = sample.agents
+        for agents, alike in groupby(reversed(postures), attrgetter("agents")):
+            last_ns = dict.fromkeys(agents, next(alike).stamp_ns) | last_ns
         return [(self._postures.get(other), last) for other, last in sorted(last_ns.items()) if other != agent]
 
     def _answer(self, pending: Pending) -> Event:

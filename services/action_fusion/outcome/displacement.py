@@ -91,7 +91,8 @@ def _level_from_camera(actor: Actor) -> Array | None:
     if length < SMALLEST_FORWARD:
         return None
     forward = horizontal / length
-    return np.stack([np.cross(forward, up), up, forward])
+    (x, y, z), (u, v, w) = forward.tolist(), up.tolist()
+    return np.array([[y * w - z * v, z * u - x * w, x * v - y * u], [u, v, w], [x, y, z]])
 
 
 def _direction(displacement_m: Array, moved_m: float, has_front: bool) -> str | None:

@@ -46,12 +46,6 @@ class Comotion:
     with_hand: Mask
 
     @property
-    def recent(self) -> Mask:
-        """Mask (n,) of the instants in the segment or at most `LOOK_BACK_NS` before it."""
-        recent: Mask = self.hand.stamps_ns >= -LOOK_BACK_NS
-        return recent
-
-    @property
     def in_motion_nearby(self) -> bool:
         """Whether the object was in motion within reach during the segment."""
         return bool((self.in_motion & self.hand.in_segment).any())
@@ -67,14 +61,14 @@ class Comotion:
         """
         if not self.with_hand.any():
             return False
-        otherwise_m = float(self.path_m[self.recent & self.in_motion & ~self.with_hand].sum())
+        otherwise_m = float(self.path_m[self.hand.recent & self.in_motion & ~self.with_hand].sum())
         return self.transport_m() >= max(moved_m, otherwise_m) or self._is_held_since(moved_m)
 
     def _is_held_since(self, moved_m: float) -> bool:
         """Whether the hand moved the object before the segment, and kept it at a constant offset up to the segment."""
         before = np.flatnonzero(~self.hand.in_segment)
-        recent = before[self.recent[before]]
-        if not len(recent):
+        recent = before[self.hand.recent[before]]
+        if not len(recent) or not self.with_hand[before].any():
             return False
         in_hand_m = median(self.hand_to_object_m[recent])
         slipped = distances_m(self.hand_to_object_m[before], in_hand_m) > STEADY_M
@@ -137,18 +131,21 @@ def gaps_m(hands: Sequence[HandTrack], tracks: Sequence[ObjectTrack]) -> Array:
 def transporting(pairs: Sequence[Comotion], moved_m: float) -> frozenset[Comotion]:
     """Return the pairs in which the hand transports the object, together with other hands or one after another."""
     moving = [pair for pair in pairs if pair.with_hand.any()]
-    return frozenset(
-        pair for pair in moving if pair.is_transported(moved_m) or _without_others(pair, moving).is_transported(moved_m)
-    )
+    return frozenset(pair for pair in moving if _is_transported_among(pair, moving, moved_m))
 
 
-def _without_others(pair: Comotion, pairs: Sequence[Comotion]) -> Comotion:
-    """Clear `in_motion` and `with_hand` at the instants at which another hand moved the object."""
+def _is_transported_among(pair: Comotion, pairs: Sequence[Comotion], moved_m: float) -> bool:
+    """Whether the hand transports the object, perhaps only at the instants at which no other hand moved the object."""
+    if pair.is_transported(moved_m):
+        return True
+    others = [other for other in pairs if other.track is pair.track and other is not pair]
+    if not others:
+        return False
     alone = np.ones_like(pair.with_hand)
-    for other in pairs:
-        if other.track is pair.track and other is not pair:
-            alone &= np.interp(pair.hand.stamps_ns, other.hand.stamps_ns, other.with_hand) < 0.5
-    return replace(pair, in_motion=pair.in_motion & alone, with_hand=pair.with_hand & alone)
+    for other in others:
+        alone &= np.interp(pair.hand.stamps_ns, other.hand.stamps_ns, other.with_hand) < 0.5
+    pair_alone = replace(pair, in_motion=pair.in_motion & alone, with_hand=pair.with_hand & alone)
+    return pair_alone.is_transported(moved_m)
 
 
 def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: float, instants: Indices) -> Indices:

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from action_fusion.intake.buffers import Hands
+from action_fusion.intake.buffers import LOOK_BACK_NS, Hands
 from action_fusion.tracks.paths import bounds_m, interpolated
 from actum.arrays import Array, Indices, Mask
 from actum.core import steps
@@ -50,11 +50,17 @@ class HandTrack:
     stamps_ns: Array
     positions_m: Array
 
-    @property
+    @cached_property
     def in_segment(self) -> Mask:
         """Mask (n,) of the instants in the segment; the others lie before it."""
         inside: Mask = self.stamps_ns >= 0
         return inside
+
+    @cached_property
+    def recent(self) -> Mask:
+        """Mask (n,) of the instants in the segment or at most `LOOK_BACK_NS` before it."""
+        recent: Mask = self.stamps_ns >= -LOOK_BACK_NS
+        return recent
 
     @cached_property
     def bounds_m(self) -> Array:

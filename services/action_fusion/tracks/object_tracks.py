@@ -71,7 +71,9 @@ class ObjectTrack:
         if len(inside) < SETTLED_SAMPLES:
             return None
         positions_m = self.positions_m[inside]
-        settled_m = median(np.stack([positions_m[n : len(inside) - 2 + n] for n in range(SETTLED_SAMPLES)]))
+        earlier_m, here_m, later_m = (positions_m[n : len(inside) - 2 + n] for n in range(SETTLED_SAMPLES))
+        low_m, high_m = np.minimum(earlier_m, here_m), np.maximum(earlier_m, here_m)
+        settled_m = np.maximum(low_m, np.minimum(high_m, later_m))  # the median
         away_m = np.linalg.norm(settled_m - self._start_m, axis=1)
         furthest = int(np.argmax(away_m))
         back_m = np.linalg.norm(self.end_m - settled_m[furthest])
