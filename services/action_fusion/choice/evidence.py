@@ -136,7 +136,7 @@ def smallest_distances(objects_ego: Array, hands_ego: Array) -> Array:
 
 def objects_ego(actor: Actor, tracks: Sequence[ObjectTrack]) -> Array:
     """Return where objects were at the actor's p postures, in the egocentric frame, (objects, p, 3)."""
-    return stacked([actor.to_ego(track.at(actor.stamps_ns)) for track in tracks], len(actor.stamps_ns), 3)
+    return actor.to_ego(stacked([track.at(actor.stamps_ns) for track in tracks], len(actor.stamps_ns), 3))
 
 
 def _proximities(actor: Actor, tracks: Sequence[ObjectTrack], sides: Sequence[Hand]) -> list[Proximity]:

@@ -89,8 +89,9 @@ class Buffer(StreamBuffer[S]):
         first, beyond = all_ns.searchsorted((start_ns - MEMORY_NS, end_ns + 1)).tolist()
         rows = first + (sessions[first:beyond] == sessions[beyond - 1 : beyond]).nonzero()[0]
         stamps_ns = all_ns[rows]
-        before_ns = stamps_ns[: stamps_ns.searchsorted(start_ns)]
-        gaps = (np.diff(before_ns, append=start_ns) >= LOOK_BACK_NS).nonzero()[0]
+        if len(rows) and start_ns - stamps_ns[-1] >= LOOK_BACK_NS:
+            return rows[:0], stamps_ns[:0]
+        gaps = (np.minimum(stamps_ns[1:], start_ns) - stamps_ns[:-1] >= LOOK_BACK_NS).nonzero()[0]
         unbroken = gaps[-1] + 1 if len(gaps) else 0
         return rows[unbroken:], stamps_ns[unbroken:]
 
@@ -147,10 +148,10 @@ class ObjectsBuffer(Buffer[ObjectsSample]):
     def sightings_of_segment(self, start_ns: int, end_ns: int) -> dict[int, Sightings]:
         """Return where each object was, by its number, in the messages that `of_segment` lists."""
         listed, listed_ns = self._rows_of_segment(start_ns, end_ns)
-        found = {}
+        found, bounds_ns = {}, listed_ns[[0, -1]] + [0, 1] if len(listed) else listed_ns
         for number, (stamps, rows) in sorted(self._positions.items() if len(listed) else ()):
             all_ns = stamps.newest(min(len(stamps), len(self)))
-            first, beyond = all_ns.searchsorted((listed_ns[0], listed_ns[-1] + 1)).tolist()
+            first, beyond = all_ns.searchsorted(bounds_ns).tolist()
             own_ns, own = all_ns[first:beyond], rows.newest(len(all_ns))[first:beyond]
             if not _in_a_row(listed):
                 is_listed = np.isin(own_ns, listed_ns)

@@ -8,7 +8,7 @@ import numpy as np
 from action_fusion.intake.buffers import LOOK_BACK_NS
 from action_fusion.tracks.hand_tracks import HandTrack
 from action_fusion.tracks.object_tracks import ObjectTrack
-from actum.arrays import Array, Indices, Mask, median
+from actum.arrays import Array, Indices, Mask, median, stacked
 from actum.core import steps
 from actum.node import SECOND_NS
 
@@ -48,11 +48,12 @@ class Comotion:
     @property
     def in_motion_nearby(self) -> bool:
         """Whether the object was in motion within reach during the segment."""
-        return bool((self.in_motion & self.hand.in_segment).any())
+        return bool(self.in_motion[self.hand.stamps_ns.searchsorted(0) :].any())
 
     def transport_m(self, since_ns: float = -LOOK_BACK_NS) -> float:
         """Return the length of the object's path in the hand since an instant, by default just before the segment."""
-        return float(self.path_m[self.with_hand & (self.hand.stamps_ns >= since_ns)].sum())
+        first = self.hand.stamps_ns.searchsorted(since_ns)
+        return float(self.path_m[first:][self.with_hand[first:]].sum())
 
     def is_transported(self, moved_m: float) -> bool:
         """Whether the hand moved the object by `moved_m` or more, and for at least half of its path near the hand.
@@ -66,13 +67,12 @@ class Comotion:
 
     def _is_held_since(self, moved_m: float) -> bool:
         """Whether the hand moved the object before the segment, and kept it at a constant offset up to the segment."""
-        before = np.flatnonzero(~self.hand.in_segment)
-        recent = before[self.hand.recent[before]]
-        if not len(recent) or not self.with_hand[before].any():
+        recent, begin = self.hand.stamps_ns.searchsorted((-LOOK_BACK_NS, 0)).tolist()
+        if recent == begin or not self.with_hand[:begin].any():
             return False
-        in_hand_m = median(self.hand_to_object_m[recent])
-        slipped = distances_m(self.hand_to_object_m[before], in_hand_m) > STEADY_M
-        held = before[np.flatnonzero(slipped)[-1] + 1 :] if slipped.any() else before
+        in_hand_m = median(self.hand_to_object_m[recent:begin])
+        slipped = (distances_m(self.hand_to_object_m[:begin], in_hand_m) > STEADY_M).nonzero()[0]
+        held = slice(slipped[-1] + 1 if len(slipped) else 0, begin)
         return float(self.path_m[held][self.with_hand[held]].sum()) >= moved_m
 
 
@@ -119,10 +119,10 @@ def gaps_m(hands: Sequence[HandTrack], tracks: Sequence[ObjectTrack]) -> Array:
 
     No hand was ever closer to an object than that.
     """
-    hand_bounds_m = np.array([hand.bounds_m for hand in hands]).reshape(-1, 1, 2, 3)
-    track_bounds_m = np.array([track.bounds_m for track in tracks]).reshape(1, -1, 2, 3)
+    hand_bounds_m = stacked([hand.bounds_m for hand in hands], 2, 3)[:, None]
+    track_bounds_m = stacked([track.bounds_m for track in tracks], 2, 3)
     beyond_m = np.maximum(
-        hand_bounds_m[:, :, 0] - track_bounds_m[:, :, 1], track_bounds_m[:, :, 0] - hand_bounds_m[:, :, 1]
+        hand_bounds_m[:, :, 0] - track_bounds_m[:, 1], track_bounds_m[:, 0] - hand_bounds_m[:, :, 1]
     )
     gaps: Array = np.linalg.norm(np.maximum(beyond_m, 0.0), axis=2)
     return gaps

@@ -1,5 +1,6 @@
 """Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -60,9 +61,18 @@ class ObjectTrack:
 
         None where the object did not get `moved_m` away, or does not end nearer to the start than to that position.
         """
-        if self.extent_m < moved_m or self._furthest is None or self._furthest[1] < moved_m:
+        if min(self.extent_m, self._most_away_m) < moved_m or self._furthest is None or self._furthest[1] < moved_m:
             return None
         return self._furthest[0]
+
+    @cached_property
+    def _most_away_m(self) -> float:
+        """A distance from the start (m) that no position in the segment exceeds, by their bounds."""
+        inside_m = self.positions_m[self.stamps_ns.searchsorted(0) :]
+        if not len(inside_m):
+            return 0.0
+        x, y, z = np.abs(bounds_m(inside_m) - self._start_m).max(axis=0).tolist()
+        return math.sqrt(x * x + y * y + z * z)
 
     @cached_property
     def _furthest(self) -> tuple[int, float] | None:
@@ -102,7 +112,7 @@ class ObjectTrack:
     @cached_property
     def extent_m(self) -> float:
         """The diagonal of these bounds: no two positions are further apart."""
-        return float(np.linalg.norm(self.bounds_m[1] - self.bounds_m[0]))
+        return math.dist(*self.bounds_m.tolist())
 
     @cached_property
     def end_m(self) -> Array:

@@ -92,7 +92,7 @@ def _holds(hand: HandTrack, track: ObjectTrack, first: int, last: int, settings:
 
 def _bridge_gaps(track: ObjectTrack, hands: Sequence[HandTrack], settings: Settings) -> ObjectTrack:
     """Fill each gap between sightings at different positions with the object's positions in the hand that held it."""
-    for i in np.flatnonzero(track.stamps_ns[1:] - track.stamps_ns[:-1] >= SHORTEST_GAP_NS)[::-1]:
+    for i in (track.stamps_ns[1:] - track.stamps_ns[:-1] >= SHORTEST_GAP_NS).nonzero()[0][::-1]:
         before_m, after_m = track.positions_m[i : i + 2]
         if np.linalg.norm(after_m - before_m) < settings.moved_m:
             continue
