@@ -107,16 +107,26 @@ class PostureBuffer(Buffer[PostureSample]):
     def __init__(self) -> None:
         super().__init__()
         self._hands = Columns(np.float64, *UNKNOWN_HANDS.shape)
+        self._people = Columns(np.int64)
 
     def append(self, sample: PostureSample) -> None:
         """Add the next posture."""
         super().append(sample)
         self._hands.append(UNKNOWN_HANDS if sample.body is None else sample.body.hands_m, len(self))
+        self._people.append(hash(sample.agents), len(self))
 
     def hands_of_segment(self, start_ns: int, end_ns: int) -> Hands:
         """Return the hands of the postures that `of_segment` lists."""
         rows, stamps_ns = self._rows_of_segment(start_ns, end_ns)
         return Hands((stamps_ns - start_ns).astype(np.float64), self._hands.newest(len(self))[rows])
+
+    def people_of_segment(self, start_ns: int, end_ns: int) -> dict[int, int]:
+        """Return the people in the images of these postures, and the stamp at which each was in one last (ns)."""
+        rows, stamps_ns = self._rows_of_segment(start_ns, end_ns)
+        people, last_ns = self._people.newest(len(self))[rows], {}
+        for row in [*(people[1:] != people[:-1]).nonzero()[0].tolist(), *range(len(rows))[-1:]]:
+            last_ns |= dict.fromkeys(self._samples[rows[row]].agents, int(stamps_ns[row]))
+        return last_ns
 
 
 class ObjectsBuffer(Buffer[ObjectsSample]):

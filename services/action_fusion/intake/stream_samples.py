@@ -108,10 +108,12 @@ def _body(posture: Posture, counters: Counters) -> Body | None:
     if not geometry.is_rigid(ego_from_camera, MAX_COORDINATE_M):
         return None
     joints_m = joints_to_array(posture.joints_m)
-    joints_m[~(np.abs(joints_m) < MAX_COORDINATE_M).all(axis=1)] = np.nan
-    known = np.isfinite(joints_m).all(axis=1)
-    if np.count_nonzero(~known) > posture.joints_m.count(None):
-        counters.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
+    unusable = ~(np.abs(joints_m) < MAX_COORDINATE_M)
+    if unusable.any():
+        joints_m[unusable.any(axis=1)] = np.nan
+        if np.count_nonzero(np.isnan(joints_m[:, 0])) > posture.joints_m.count(None):
+            what = f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far"
+            counters.reject("bad_joint", what)
     depth_std_m = min(posture.depth_std_m or 0.0, MAX_COORDINATE_M)
     up_in_camera = LEVEL if posture.up_in_camera is None else tuple(posture.up_in_camera)
     hands_m = (joints_m[HANDS] - ego_from_camera[:3, 3]) @ ego_from_camera[:3, :3]

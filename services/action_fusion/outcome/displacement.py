@@ -7,6 +7,7 @@ import numpy as np
 from action_fusion.choice.evidence import Evidence
 from action_fusion.tracks.actors import Actor
 from action_fusion.tracks.object_tracks import ObjectTrack
+from actum import geometry
 from actum.arrays import Array
 from actum.messages import Motion
 from actum.node import SECOND_NS
@@ -91,8 +92,7 @@ def _level_from_camera(actor: Actor) -> Array | None:
     if length < SMALLEST_FORWARD:
         return None
     forward = horizontal / length
-    (x, y, z), (u, v, w) = forward.tolist(), up.tolist()
-    return np.array([[y * w - z * v, z * u - x * w, x * v - y * u], [u, v, w], [x, y, z]])
+    return np.array([geometry.cross(forward.tolist(), up.tolist()), up, forward])
 
 
 def _direction(displacement_m: Array, moved_m: float, has_front: bool) -> str | None:

@@ -119,8 +119,10 @@ def _tracks_of(hands: Hands) -> dict[Hand, HandTrack]:
 
 def _hand_track(hands: Hands, number: int) -> HandTrack:
     stamps_ns, smooth_m = known_smoothed(hands, number)
-    stride = max(1, math.ceil(len(stamps_ns) / MOST_INSTANTS))
-    return HandTrack(BOTH_HANDS[number], *map(np.ascontiguousarray, (stamps_ns[::stride], smooth_m[::stride])))
+    if len(stamps_ns) > MOST_INSTANTS:
+        stride = math.ceil(len(stamps_ns) / MOST_INSTANTS)
+        stamps_ns, smooth_m = stamps_ns[::stride].copy(), smooth_m[::stride].copy()
+    return HandTrack(BOTH_HANDS[number], stamps_ns, smooth_m)
 
 
 def known_smoothed(hands: Hands, number: int) -> tuple[Array, Array]:

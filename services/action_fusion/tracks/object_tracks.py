@@ -117,12 +117,12 @@ class ObjectTrack:
     @cached_property
     def end_m(self) -> Array:
         """The last position (3,): the median of the last sightings or, if occluded, the mean of the rest."""
-        latest = self.stamps_ns >= self.stamps_ns[-1] - SETTLED_NS
+        latest = int(self.stamps_ns.searchsorted(self.stamps_ns[-1] - SETTLED_NS))
         if self.seen[-1]:
-            unseen = np.flatnonzero(~self.seen)
-            latest[: unseen[-1] + 1 if len(unseen) else 0] = False
-            return median(self.positions_m[latest][-SETTLED_SAMPLES:])
-        away = ~latest | (np.linalg.norm(self.positions_m - self.positions_m[-1], axis=1) > RESTING_M)
+            unseen = (~self.seen).nonzero()[0]
+            return median(self.positions_m[max(latest, *unseen[-1:] + 1, len(self.seen) - SETTLED_SAMPLES) :])
+        away = np.linalg.norm(self.positions_m - self.positions_m[-1], axis=1) > RESTING_M
+        away[:latest] = True
         before = np.flatnonzero(away | self.seen)
         rest_m: Array = self.positions_m[before[-1] + 1 if len(before) else 0 :].mean(axis=0)
         return rest_m
@@ -130,10 +130,10 @@ class ObjectTrack:
     @cached_property
     def _start_m(self) -> Array:
         """The position (3,) at the segment's start, by the sightings around it."""
-        apart_ns = np.abs(self.stamps_ns[self.seen])
-        nearest = np.argsort(apart_ns, kind="stable")[:SETTLED_SAMPLES]
-        around = nearest[apart_ns[nearest] <= SETTLED_NS]
-        return median(self.positions_m[self.seen][around]) if len(around) else self.at(np.zeros(1))[0]
+        first, beyond = self.stamps_ns.searchsorted((-SETTLED_NS, np.nextafter(SETTLED_NS, np.inf))).tolist()
+        around = first + self.seen[first:beyond].nonzero()[0]
+        nearest = around[np.abs(self.stamps_ns[around]).argsort(kind="stable")[:SETTLED_SAMPLES]]
+        return median(self.positions_m[nearest]) if len(nearest) else self.at(np.zeros(1))[0]
 
 
 def object_tracks(sightings: Mapping[int, Sightings], frames: Sequence[ObjectsSample]) -> list[ObjectTrack]:
