@@ -65,10 +65,10 @@ class ObjectsSample(Sample):
     `quaternions_xyzw` (4,) holds the orientations of the objects that were seen.
     """
 
-    positions_m: dict[int, Array]
+    positions_m: dict[int, list[float]]
     names: dict[int, str]
     image_tracked: frozenset[int]
-    quaternions_xyzw: dict[int, Array]
+    quaternions_xyzw: dict[int, list[float]]
 
 
 def posture_sample(posture: Posture, counters: Counters) -> PostureSample:
@@ -88,17 +88,17 @@ def objects_sample(message: Objects, counters: Counters) -> ObjectsSample:
     return ObjectsSample(
         message.stamp_ns,
         message.session_id,
-        {each.id: np.array(each.position_m, dtype=np.float64) for each in near},
+        {each.id: each.position_m for each in near},
         {each.id: each.name for each in near},
         frozenset(each.id for each in near if not each.seen),
         {each.id: unit for each in near if each.seen and (unit := _unit(each.quaternion_xyzw)) is not None},
     )
 
 
-def _unit(quaternion: list[float]) -> Array | None:
-    """Normalise a quaternion to unit length (4,); None where its length is far from 1."""
+def _unit(quaternion: list[float]) -> list[float] | None:
+    """Normalise a quaternion to unit length; None where its length is far from 1."""
     length = math.hypot(*quaternion)
-    return np.array(quaternion) / length if abs(length - 1) <= UNIT_TOLERANCE else None
+    return [each / length for each in quaternion] if abs(length - 1) <= UNIT_TOLERANCE else None
 
 
 def _body(posture: Posture, counters: Counters) -> Body | None:

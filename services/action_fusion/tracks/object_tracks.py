@@ -86,8 +86,7 @@ class ObjectTrack:
         settled_m = np.maximum(low_m, np.minimum(high_m, later_m))  # the median
         away_m = np.linalg.norm(settled_m - self._start_m, axis=1)
         furthest = int(np.argmax(away_m))
-        back_m = np.linalg.norm(self.end_m - settled_m[furthest])
-        came_back = np.linalg.norm(self.end_m - self._start_m) < back_m
+        came_back = math.dist(self.end_m, self._start_m) < math.dist(self.end_m, settled_m[furthest])
         if not came_back or away_m[furthest] < TURN_TO_NOISE * noise_m(positions_m):
             return None
         return int(inside[furthest + SETTLED_SAMPLES // 2]), float(away_m[furthest])
@@ -102,7 +101,7 @@ class ObjectTrack:
 
     def is_displaced(self, moved_m: float) -> bool:
         """Whether the object is displaced by `moved_m` or more."""
-        return self.extent_m >= moved_m and float(np.linalg.norm(self.displacement_m(moved_m))) >= moved_m
+        return self.extent_m >= moved_m and math.hypot(*self.displacement_m(moved_m).tolist()) >= moved_m
 
     @cached_property
     def bounds_m(self) -> Array:
