@@ -10,7 +10,7 @@ from typing import Any
 from action_fusion.fusion import fuse, rejected
 from action_fusion.intake.buffers import LATEST_ACTION_NS, Buffer, KnownObjects, ObjectsBuffer, PostureBuffer, S
 from action_fusion.intake.losses import Before
-from action_fusion.intake.stream_samples import PostureSample, objects_sample, posture_sample
+from action_fusion.intake.stream_samples import objects_sample, posture_sample
 from action_fusion.settings import Settings
 from actum import keys
 from actum.commands import Command

@@ -34,15 +34,13 @@ def is_rigid(transform: Array, furthest_m: float) -> bool:
     With plain numbers, since every posture is asked: NumPy takes several times as long.
     """
     *rows, last = transform.tolist()
-    shift_m = [row[3] for row in rows]
-    if last != [0, 0, 0, 1] or not all(abs(each) <= furthest_m for each in shift_m):
+    x, y, z = (row[:3] for row in rows)
+    if last != [0, 0, 0, 1] or not all(abs(row[3]) <= furthest_m for row in rows):
         return False
-    x, y, z = ((a, b, c) for a, b, c, _ in rows)
-    if not all(abs(each) <= 2 for axis in (x, y, z) for each in axis):
+    if not all(abs(each) <= 2 for each in (*x, *y, *z)):
         return False
-    lengths2, products = (_dot(x, x), _dot(y, y), _dot(z, z)), (_dot(x, y), _dot(y, z), _dot(z, x))
-    orthogonal = all(abs(each - 1) <= RIGID_TOLERANCE for each in lengths2) and max(map(abs, products)) <= RIGID_TOLERANCE
-    return orthogonal and _dot(cross(x, y), z) > 0
+    products = (_dot(x, x) - 1, _dot(y, y) - 1, _dot(z, z) - 1, _dot(x, y), _dot(y, z), _dot(z, x))
+    return max(map(abs, products)) <= RIGID_TOLERANCE and _dot(cross(x, y), z) > 0
 
 
 def invert(b_from_a: Array) -> Array:

@@ -72,6 +72,7 @@ class Evidence:
         actor: the actor's postures in the segment itself.
         hands: the tracks of all hands, from some time before the segment to its end.
         tracks: those of the objects, over the same time.
+        objects_ego: where the objects were at the actor's p postures, egocentric, (objects, p, 3).
         near: the objects with the hand that came nearest to each; none where no hand is known.
         settings: thresholds and labels.
     """
@@ -81,6 +82,7 @@ class Evidence:
     actor: Actor
     hands: HandTracks
     tracks: Sequence[ObjectTrack]
+    objects_ego: Array
     near: Sequence[Proximity]
     settings: Settings
 
@@ -112,7 +114,10 @@ def gather(
     """Gather the evidence; the hand that may have acted is the marked one, else that of the moving arm, else either."""
     side = action.hand or PART_HANDS.get(action.part)
     sides = BOTH_HANDS if side is None else (side,)
-    return Evidence(action, sides, actor, hands, tracks, _proximities(actor, tracks, sides), settings)
+    at_postures_m = stacked([track.at(actor.stamps_ns) for track in tracks], len(actor.stamps_ns), 3)
+    objects_ego = actor.to_ego(at_postures_m)
+    near = _proximities(tracks, objects_ego, actor, sides)
+    return Evidence(action, sides, actor, hands, tracks, objects_ego, near, settings)
 
 
 def pairs_of(
@@ -134,15 +139,12 @@ def smallest_distances(objects_ego: Array, hands_ego: Array) -> Array:
     return smallest
 
 
-def objects_ego(actor: Actor, tracks: Sequence[ObjectTrack]) -> Array:
-    """Return where objects were at the actor's p postures, in the egocentric frame, (objects, p, 3)."""
-    return actor.to_ego(stacked([track.at(actor.stamps_ns) for track in tracks], len(actor.stamps_ns), 3))
-
-
-def _proximities(actor: Actor, tracks: Sequence[ObjectTrack], sides: Sequence[Hand]) -> list[Proximity]:
+def _proximities(
+    tracks: Sequence[ObjectTrack], objects_ego: Array, actor: Actor, sides: Sequence[Hand]
+) -> list[Proximity]:
     """Measure the smallest distance of a hand to each object, where one is known."""
     hands_ego = np.array([actor.hand_m(side) for side in sides])
-    distances_m = smallest_distances(objects_ego(actor, tracks), hands_ego).tolist()
+    distances_m = smallest_distances(objects_ego, hands_ego).tolist()
     nearest = [min(zip(of_hands, sides, strict=True), key=lambda each: each[0]) for of_hands in distances_m]
     return [
         Proximity(track, distance_m, side)

@@ -5,10 +5,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from action_fusion.choice.evidence import NO_HAND, OFF_THE_LINE, Choice, Evidence, objects_ego
+from action_fusion.choice.evidence import NO_HAND, OFF_THE_LINE, Choice, Evidence
 from action_fusion.tracks.actors import Actor
 from action_fusion.tracks.comotion import FURTHEST_SHARE
-from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.arrays import Array, median
 from actum.messages import Hand, Pointing
 
@@ -31,7 +30,7 @@ SMALLEST_M = 1e-9
 def pointed_at(evidence: Evidence) -> Choice:
     """Choose the object at the smallest angle to the pointing ray; objects at nearly the same angle are rivals."""
     settings, side = evidence.settings, pointing_side(evidence.actor, evidence.sides)
-    by_angle = zip(_angles(evidence.tracks, evidence.actor, side), evidence.tracks, strict=True)
+    by_angle = zip(_angles(evidence.objects_ego, evidence.actor, side), evidence.tracks, strict=True)
     ranked = sorted((one for one in by_angle if math.isfinite(one[0])), key=lambda one: one[0])
     if not ranked:
         return Choice(why=NO_HAND)
@@ -82,15 +81,14 @@ def _angle(one: Array, other: Array) -> float:
     return float(np.arccos(np.clip(one @ other / max(length, SMALLEST_M), -1.0, 1.0)))
 
 
-def _angles(tracks: Sequence[ObjectTrack], actor: Actor, side: Hand) -> list[float]:
+def _angles(objects_ego: Array, actor: Actor, side: Hand) -> list[float]:
     """Measure each object's angle to the ray from head to finger, or to that of the arm if that fits clearly better.
 
     Most people point along the line of sight over the finger, some along the stretched arm.
     """
-    objects = objects_ego(actor, tracks)
     head, tip = actor.joint_m("head"), fingertip_m(actor, side)
     shoulder, hand = actor.joint_m(f"{side}_shoulder"), actor.hand_m(side)
-    by_eye, by_arm = pointing_angles(objects, tip, head), pointing_angles(objects, hand, shoulder)
+    by_eye, by_arm = pointing_angles(objects_ego, tip, head), pointing_angles(objects_ego, hand, shoulder)
     arm_fits = math.isfinite(min(by_eye)) and min(by_arm) < CLEARLY * min(by_eye)
     return by_arm if arm_fits else by_eye
 

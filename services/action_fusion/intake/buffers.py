@@ -123,7 +123,8 @@ class PostureBuffer(Buffer[PostureSample]):
     def people_of_segment(self, start_ns: int, end_ns: int) -> dict[int, int]:
         """Return the people in the images of these postures, and the stamp at which each was in one last (ns)."""
         rows, stamps_ns = self._rows_of_segment(start_ns, end_ns)
-        people, last_ns = self._people.newest(len(self))[rows], {}
+        people = self._people.newest(len(self))[rows]
+        last_ns: dict[int, int] = {}
         for row in [*(people[1:] != people[:-1]).nonzero()[0].tolist(), *range(len(rows))[-1:]]:
             last_ns |= dict.fromkeys(self._samples[rows[row]].agents, int(stamps_ns[row]))
         return last_ns

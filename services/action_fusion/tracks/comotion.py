@@ -121,9 +121,7 @@ def gaps_m(hands: Sequence[HandTrack], tracks: Sequence[ObjectTrack]) -> Array:
     """
     hand_bounds_m = stacked([hand.bounds_m for hand in hands], 2, 3)[:, None]
     track_bounds_m = stacked([track.bounds_m for track in tracks], 2, 3)
-    beyond_m = np.maximum(
-        hand_bounds_m[:, :, 0] - track_bounds_m[:, 1], track_bounds_m[:, 0] - hand_bounds_m[:, :, 1]
-    )
+    beyond_m = np.maximum(hand_bounds_m[:, :, 0] - track_bounds_m[:, 1], track_bounds_m[:, 0] - hand_bounds_m[:, :, 1])
     gaps: Array = np.linalg.norm(np.maximum(beyond_m, 0.0), axis=2)
     return gaps
 

@@ -129,7 +129,7 @@ class ObjectTrack:
     @cached_property
     def _start_m(self) -> Array:
         """The position (3,) at the segment's start, by the sightings around it."""
-        first, beyond = self.stamps_ns.searchsorted((-SETTLED_NS, np.nextafter(SETTLED_NS, np.inf))).tolist()
+        first, beyond = self.stamps_ns.searchsorted((-SETTLED_NS, SETTLED_NS + 1)).tolist()
         around = first + self.seen[first:beyond].nonzero()[0]
         nearest = around[np.abs(self.stamps_ns[around]).argsort(kind="stable")[:SETTLED_SAMPLES]]
         return median(self.positions_m[nearest]) if len(nearest) else self.at(np.zeros(1))[0]
