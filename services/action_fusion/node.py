@@ -10,7 +10,7 @@ from typing import Any
 from action_fusion.fusion import fuse, rejected
 from action_fusion.intake.buffers import LATEST_ACTION_NS, Buffer, KnownObjects, ObjectsBuffer, PostureBuffer, S
 from action_fusion.intake.losses import Before
-from action_fusion.intake.stream_samples import PostureSample, objects_sample, posture_sample
+from action_fusion.intake.stream_samples import objects_sample, posture_sample
 from action_fusion.settings import Settings
 from actum import keys
 from actum.commands import Command
@@ -206,29 +206,21 @@ class ActionFusion:
         reached = (-1 if postures is None else postures.newest_ns, self._objects.newest_ns)
         if not all(pending.end_ns <= newest_ns <= pending.end_ns + LATEST_ACTION_NS for newest_ns in reached):
             return False
-        others = self._others(pending.action.agent, self._own(pending))
+        others = self._others(pending)
         return all(buffer is not None and buffer.newest_ns >= last_ns for buffer, last_ns in others)
 
-    def _own(self, pending: Pending) -> list[PostureSample]:
-        """List the acting person's postures in the segment and before it."""
-        return self._buffer(pending.action.agent).of_segment(pending.action.start_ns, pending.end_ns)
-
-    def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[PostureBuffer | None, int]]:
+    def _others(self, pending: Pending) -> list[tuple[PostureBuffer | None, int]]:
         """List the streams of the other people in the image, and the stamp at which each was in it last (ns)."""
-        last_ns: dict[int, int] = {}
-        newer: tuple[int, ...] = (agent,)
-        for sample in reversed(postures):
-            if sample.agents != newer:
-                last_ns = dict.fromkeys(sample.agents, sample.stamp_ns) | last_ns
-                newer = sample.agents
+        agent = pending.action.agent
+        last_ns = self._buffer(agent).people_of_segment(pending.action.start_ns, pending.end_ns)
         return [(self._postures.get(other), last) for other, last in sorted(last_ns.items()) if other != agent]
 
     def _answer(self, pending: Pending) -> Event:
         self._pending.remove(pending)
         action, start_ns, end_ns = pending.action, pending.action.start_ns, pending.end_ns
-        postures = self._own(pending)
-        others = [buffer for buffer, _ in self._others(action.agent, postures) if buffer is not None]
-        for buffer in (self._buffer(action.agent), self._objects):
+        own = self._buffer(action.agent)
+        people = [own, *(buffer for buffer, _ in self._others(pending) if buffer is not None)]
+        for buffer in (own, self._objects):
             buffer.mark_answered(start_ns, end_ns)
         of_people = [buffer.stamps_since(start_ns) for buffer in self._postures.values()]
         postures_ns = sorted(ns for stamps_ns in of_people if len(stamps_ns) for ns in stamps_ns[[0, -1]].tolist())
@@ -238,8 +230,8 @@ class ActionFusion:
             return rejected(action, reason)
         return fuse(
             action,
-            postures,
-            [buffer.hands_of_segment(start_ns, end_ns) for buffer in (self._buffer(action.agent), *others)],
+            own.of_segment(start_ns, end_ns),
+            [buffer.hands_of_segment(start_ns, end_ns) for buffer in people],
             self._objects.sightings_of_segment(start_ns, end_ns),
             self._objects.of_segment(start_ns, end_ns),
             self._settings,
