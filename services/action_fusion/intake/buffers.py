@@ -1,5 +1,6 @@
 """The recent past of the streams, long enough for the longest segment and the latest action."""
 
+from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from action_fusion.intake.columns import Columns
 from action_fusion.intake.stream_samples import HANDS, ObjectsSample, PostureSample, Sample
 from actum.arrays import Array, Indices, Mask
-from actum.limits import MAX_SEGMENT_NS
+from actum.limits import MAX_SEGMENT_NS, MOST_FRAMES, MOST_STREAMS
 from actum.losses import StreamBuffer
 from actum.messages import MOST_OBJECTS, Objects
 from actum.node import SECOND_NS, Counters
@@ -113,6 +114,45 @@ class PostureBuffer(Buffer[PostureSample]):
         """Return the hands of the postures that `of_segment` lists."""
         rows, stamps_ns = self._rows_of_segment(start_ns, end_ns)
         return Hands((stamps_ns - start_ns).astype(np.float64), self._hands.newest(len(self))[rows])
+
+
+class PostureBuffers(dict[int, PostureBuffer]):
+    """The streams of all people by their numbers, `MOST_STREAMS` at the most, the one used last at the end."""
+
+    def __init__(self, counters: Counters) -> None:
+        super().__init__()
+        self._counters = counters
+
+    @property
+    def newest_ns(self) -> int:
+        """Stamp of the newest posture of anybody, -1 where there is none."""
+        return max((buffer.newest_ns for buffer in self.values()), default=-1)
+
+    def of(self, agent: int) -> PostureBuffer:
+        """Return a person's stream; where there are too many, an empty one or the one used least recently goes."""
+        buffer = self.pop(agent) if agent in self else PostureBuffer()
+        if len(self) == MOST_STREAMS:
+            gone = next((each for each, kept in self.items() if not kept), next(iter(self)))
+            if self.pop(gone):
+                self._counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {gone} is forgotten")
+        self[agent] = buffer
+        return buffer
+
+    def others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[PostureBuffer | None, int]]:
+        """List the streams of the other people in the image, and the stamp at which each was in it last (ns)."""
+        last_ns: dict[int, int] = {}
+        newer: tuple[int, ...] = (agent,)
+        for sample in reversed(postures):
+            if sample.agents != newer:
+                last_ns = dict.fromkeys(sample.agents, sample.stamp_ns) | last_ns
+                newer = sample.agents
+        return [(self.get(other), last) for other, last in sorted(last_ns.items()) if other != agent]
+
+    def make_room(self) -> None:
+        """Forget the oldest posture of whom most are kept of, where there are too many."""
+        if sum(map(len, self.values())) > MOST_FRAMES:
+            max(self.values(), key=len).let_go()
+            self._counters.reject("too_many_frames", f"more than {MOST_FRAMES} postures in a minute")
 
 
 class ObjectsBuffer(Buffer[ObjectsSample]):
