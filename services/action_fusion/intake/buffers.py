@@ -1,5 +1,6 @@
 """The recent past of the streams, long enough for the longest segment and the latest action."""
 
+from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 from action_fusion.intake.columns import Columns
 from action_fusion.intake.stream_samples import HANDS, ObjectsSample, PostureSample, Sample
 from actum.arrays import Array, Indices, Mask
-from actum.limits import MAX_SEGMENT_NS
+from actum.limits import MAX_SEGMENT_NS, MOST_FRAMES, MOST_STREAMS
 from actum.losses import StreamBuffer
 from actum.messages import MOST_OBJECTS, Objects
 from actum.node import SECOND_NS, Counters
@@ -128,6 +129,40 @@ class PostureBuffer(Buffer[PostureSample]):
         for row in [*(people[1:] != people[:-1]).nonzero()[0].tolist(), *range(len(rows))[-1:]]:
             last_ns |= dict.fromkeys(self._samples[rows[row]].agents, int(stamps_ns[row]))
         return last_ns
+
+
+class PostureBuffers(dict[int, PostureBuffer]):
+    """The streams of all people by their numbers, `MOST_STREAMS` at the most, the one used last at the end."""
+
+    def __init__(self, counters: Counters) -> None:
+        super().__init__()
+        self._counters = counters
+
+    @property
+    def newest_ns(self) -> int:
+        """Stamp of the newest posture of anybody, -1 where there is none."""
+        return max((buffer.newest_ns for buffer in self.values()), default=-1)
+
+    def of(self, agent: int) -> PostureBuffer:
+        """Return a person's stream; where there are too many, an empty one or the one used least recently goes."""
+        buffer = self.pop(agent) if agent in self else PostureBuffer()
+        if len(self) == MOST_STREAMS:
+            gone = next((each for each, kept in self.items() if not kept), next(iter(self)))
+            if self.pop(gone):
+                self._counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {gone} is forgotten")
+        self[agent] = buffer
+        return buffer
+
+    def others(self, agent: int, start_ns: int, end_ns: int) -> list[tuple[PostureBuffer | None, int]]:
+        """List the streams of the other people in the images of a segment, and when each was in one last (ns)."""
+        last_ns = self.of(agent).people_of_segment(start_ns, end_ns)
+        return [(self.get(other), last) for other, last in sorted(last_ns.items()) if other != agent]
+
+    def make_room(self) -> None:
+        """Forget the oldest posture of whom most are kept of, where there are too many."""
+        if sum(map(len, self.values())) > MOST_FRAMES:
+            max(self.values(), key=len).let_go()
+            self._counters.reject("too_many_frames", f"more than {MOST_FRAMES} postures in a minute")
 
 
 class ObjectsBuffer(Buffer[ObjectsSample]):
