@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from benchmarks.intent.takes import Take
 
-from actum.arrays import Array
+from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
 STEP_S = 0.1
@@ -25,8 +25,12 @@ HORIZON_S = 1.5
 
 
 def nearest(take: Take) -> Array:
-    """The nearer an object is to a hand, the likelier."""
-    return _best_hand(take, lambda hand_m, _: hand_m)
+    """The nearer an object is to a hand that comes closer to it, the likelier."""
+    scores, before = [], _rows_before(take, STEP_S)
+    for hand_m in _hands(take):
+        apart_m = np.linalg.norm(_objects(take) - hand_m[:, None], axis=2)
+        scores.append(np.where(apart_m[before] - apart_m > RESTING_MPS * STEP_S, -apart_m, -np.inf))
+    return np.fmax(*scores)
 
 
 def constant_velocity(take: Take) -> Array:
@@ -111,7 +115,7 @@ def _objects(take: Take) -> Array:
     """Return where each object is, or was seen last, (T, n, 3); before it was seen, where it was seen first."""
     filled = []
     for _, path_m in sorted(take.objects_m.items()):
-        seen = np.isfinite(path_m).all(axis=1)
+        seen: Mask = np.isfinite(path_m.sum(axis=1))
         last = np.maximum.accumulate(np.where(seen, np.arange(len(seen)), 0))
         last[: seen.argmax()] = seen.argmax()
         filled.append(path_m[last])

@@ -1,6 +1,5 @@
 """The recent past of the streams, long enough for the longest segment and the latest action."""
 
-from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np

@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from actum.arrays import Array
+from actum.arrays import Array, Mask
 
 SHIPPED = "contact_network.npz"
 """The network that comes with actum; `python -m benchmarks.intent.learning` makes it."""
@@ -56,13 +56,13 @@ class ContactNetwork:
     def foresee(self, features: Array) -> Foreseen:
         """Return the probability of each contact of the hands with n objects, (2, n, features); NaN counts as none."""
         unit = np.clip((features - self.mean) / self.sd, -WIDEST, WIDEST)
-        known = np.isfinite(unit).all(axis=2)
+        known: Mask = np.isfinite(unit.sum(axis=2))
         unit = np.where(known[..., None], unit, 0.0)
         rows = unit.reshape(-1, unit.shape[2])
         hidden = np.tanh(rows @ self.into + self.into_bias[:, None])
         hidden = np.tanh(hidden @ self.between + self.between_bias[:, None])
         scores = np.einsum("krh,kh->kr", hidden, self.out) + self.out_bias[:, None]
-        scores = np.where(known, scores.reshape(-1, *known.shape), -np.inf)
+        scores = np.where(known, scores.reshape(len(self.out), *known.shape), -np.inf)
         most = np.maximum(scores.max(axis=2, keepdims=True, initial=0.0), 0.0)
         likely = np.exp(scores - most)
         each = likely / (likely.sum(axis=2, keepdims=True) + np.exp(-most))

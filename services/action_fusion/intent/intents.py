@@ -114,7 +114,7 @@ class Intents:
         most.
         """
         scale = 1 / max(float(foreseen.probability.sum()), 1.0)
-        acts = [(None, 1.0)]
+        acts: list[tuple[str | None, float]] = [(None, 1.0)]
         if ongoing is not None and ongoing.action is not None and not ongoing.unknown:
             acts = [(ongoing.action, ongoing.confidence), (None, 1 - ongoing.confidence)]
         for hand, k in np.argwhere(scale * foreseen.probability >= LEAST).tolist():

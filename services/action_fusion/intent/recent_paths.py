@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from action_fusion.intake.columns import Columns
 from action_fusion.intake.stream_samples import HANDS, Body, ObjectsSample
 from actum.arrays import Array
+from actum.messages import Hand
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 
-SIDES = ("right", "left")
+SIDES: tuple[Hand, Hand] = ("right", "left")
 """The hands, in the order of `stream_samples.HANDS`."""
 ARMS = [*HANDS, *(INDEX[f"{side}_{joint}"] for joint in ("elbow", "shoulder") for side in SIDES)]
 """The joints that are looked at: hands, elbows and shoulders."""
