@@ -110,5 +110,5 @@ class Intents:
             probability=1 - gap_m / NEAR_M,
             contact_s=gap_m / speed_mps,
             contact_std_s=gap_m / speed_mps / 2,
-            place_m=place_m.tolist(),
+            place_m=np.asarray(place_m).tolist(),
         )
