@@ -30,7 +30,6 @@ from benchmarks.intent.takes import LAYOUTS, Take, bare, captured, everyday, sim
 from benchmarks.page import measure_page
 
 from action_fusion.intent.contact_network import ContactNetwork, shipped_network
-from actum.arrays import Array
 
 PAGE = Path(__file__).with_name("results.md")
 TESTED, TEST_SEED = range(101, 109), 5
@@ -41,7 +40,6 @@ FOLDS = 5
 """Parts of the motion capture, of which each is left out of the learning in turn."""
 FOLD_PERSONS = range(1, 9)
 """Simulated people learnt from beside motion capture: fewer, since it is learnt once for each part."""
-Method = Callable[[Take], Array]
 HEAD = (
     "| | time ahead, median (s) | precision | announced ahead | right "
     + " | right ".join(f"{s} s before" for s in BEFORE_S)
@@ -62,7 +60,7 @@ def said_by(network: ContactNetwork, take: Take) -> Said:
     return Said(take, np.array(scores), np.array(times_s))
 
 
-def simpler(training: Sequence[Take]) -> dict[str, Method]:
+def simpler(training: Sequence[Take]) -> dict[str, baselines.Method]:
     """Return the baselines by name."""
     return {
         "nearest object": baselines.nearest,

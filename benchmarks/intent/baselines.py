@@ -8,6 +8,8 @@ from benchmarks.intent.takes import Take
 from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
+Method = Callable[[Take], Array]
+"""Scores each object at every instant of a take, (T, n): the higher, the likelier it is touched."""
 STEP_S = 0.1
 """Over how long a hand's velocity is measured (s)."""
 RESTING_MPS = 0.1
@@ -56,19 +58,20 @@ def minimum_jerk(take: Take) -> Array:
     ratio = shares * 30 * shares**2 * (1 - shares) ** 2 / way
 
     def end_of(hand_m: Array, take: Take) -> Array:
-        speed = np.linalg.norm(hand_m - hand_m[_rows_before(take, STEP_S)], axis=1) / STEP_S
+        before = _rows_before(take, STEP_S)
+        middle_m, middle_ns = (hand_m + hand_m[before]) / 2, (take.stamps_ns + take.stamps_ns[before]) // 2
+        speed = np.linalg.norm(hand_m - hand_m[before], axis=1) / STEP_S
         moving = speed > RESTING_MPS
         began = np.maximum.accumulate(np.where(moving, 0, np.arange(len(speed))))
-        gone_m = hand_m - hand_m[began]
-        elapsed_s = (take.stamps_ns - take.stamps_ns[began]) / SECOND_NS
+        gone_m, elapsed_s = middle_m - middle_m[began], (middle_ns - middle_ns[began]) / SECOND_NS
         now = elapsed_s * speed / np.maximum(np.linalg.norm(gone_m, axis=1), 1e-3)
         over = np.interp(-now, -ratio, way)
-        return np.where(moving[:, None], hand_m[began] + gone_m / over[:, None], np.nan)
+        return np.where(moving[:, None], middle_m[began] + gone_m / over[:, None], np.nan)
 
     return _best_hand(take, end_of)
 
 
-def of_nearest_path(training: Sequence[Take]) -> Callable[[Take], Array]:
+def of_nearest_path(training: Sequence[Take]) -> Method:
     """The nearer an object is to where the most similar path of training led, as far from the hand as there."""
     paths, ends = [], []
     for take in training:

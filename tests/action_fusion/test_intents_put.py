@@ -65,13 +65,13 @@ def test_a_posture_that_comes_late_or_twice_gives_no_intent(node: ActionFusion) 
 
 
 def test_an_intent_names_the_segment_that_goes_on_until_that_has_ended(node: ActionFusion) -> None:
-    going = action("lift", 0.0, 0.5, segment_id="auto-1", final=False, completeness=0.2)
+    going = action("lift", 0.0, 0.3, segment_id="auto-1", final=False, completeness=0.2)
     reach = stream(end_s=0.75)
-    half = len(reach) * 4 // 5
-    going_on = intents_of(node, *reach[:half], going, reach[half], reach[half + 1])
+    early = [message for message in reach if (message.stamp_ns or 0) < at(0.5)]
+    going_on = intents_of(node, going, *early)
     assert (going_on[-1].segment_id, going_on[-1].completeness) == ("auto-1", 0.2)
     assert going_on[-1].intended[0].action == "lift"
-    ended = intents_of(node, action("lift", 0.0, 0.5, segment_id="auto-1"), *reach[half + 2 :])
+    ended = intents_of(node, action("lift", 0.0, 0.3, segment_id="auto-1"), *reach[len(early) :])
     assert ended
     assert {intent.segment_id for intent in ended} == {None}
 
