@@ -78,8 +78,8 @@ def test_on_a_straight_reach_at_minimum_jerk_every_baseline_is_right(method: bas
     assert (scores[moving].argmax(axis=1) == 0).all()
 
 
-def test_minimum_jerk_knows_the_end_of_such_a_reach_half_way() -> None:
-    row = round((TOUCHED_S - 0.45) * RATE_HZ)
+def test_minimum_jerk_knows_the_end_of_such_a_reach_after_three_quarters_of_its_time() -> None:
+    row = round((TOUCHED_S - 0.225) * RATE_HZ)
     assert -baselines.minimum_jerk(reach())[row, 0] < 0.1
 
 
