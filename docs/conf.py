@@ -36,6 +36,7 @@ RESULTS = {
     "Objects": "benchmarks/objects/results",
     "Hands and objects": "benchmarks/bimacs",
     "Contacts foreseen": "benchmarks/intent/results",
+    "Contacts foreseen: what was tried": "benchmarks/intent/README",
     "Cuts": "benchmarks/cutting",
     "Webcam": "benchmarks/camera/results",
     "Webcam, found live": "benchmarks/camera/continuous",

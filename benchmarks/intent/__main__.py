@@ -13,8 +13,17 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from benchmarks.intent import baselines, pairs
-from benchmarks.intent.learning import PERSONS, SEED, Examples, background_takes, features_of, learnt, weighted
+from benchmarks.intent import baselines, cad120, pairs
+from benchmarks.intent.learning import (
+    CAPTURED_WEIGHT,
+    EVERYDAY_WEIGHT,
+    PERSONS,
+    SEED,
+    Examples,
+    background_takes,
+    features_of,
+    learnt,
+)
 from benchmarks.intent.scoring import (
     ALARM,
     BEFORE_S,
@@ -111,10 +120,12 @@ def of_captured(folder: Path | None) -> Iterator[str]:
         return
     takes, said = captured(folder), []
     acting = [*map(without_body, simulated(FOLD_PERSONS, SEED)), *bare(FOLD_PERSONS, SEED)]
-    background = list(map(without_body, background_takes()[::3]))
+    background = map(without_body, background_takes()[::3])
+    others = [Examples.of(acting), Examples.of(background, EVERYDAY_WEIGHT)]
+    of_takes = [Examples.of([take], CAPTURED_WEIGHT) for take in takes]
     for fold in range(FOLDS):
-        rest = [take for number, take in enumerate(takes) if number % FOLDS != fold]
-        network = learnt(Examples(*weighted(acting, background, rest)))
+        rest = [each for number, each in enumerate(of_takes) if number % FOLDS != fold]
+        network = learnt(Examples.joined([*others, *rest]))
         said += [said_by(network, take) for take in takes[fold::FOLDS]]
     yield (
         f"{len(takes)} takes of one person, hands and three objects; each fifth is left out of the learning in turn. "
@@ -141,6 +152,12 @@ def of_pairs(_folder: Path | None) -> Iterator[str]:
     yield from pairs.table(TESTED, TEST_SEED)
 
 
+def of_cad120(folder: Path | None) -> Iterator[str]:
+    """Yield the table of reaches whose objects are known by their boxes alone."""
+    near = None if folder is None else folder.with_name("cad120")
+    yield from ["Not run: there is no such folder."] if near is None or not near.is_dir() else cad120.table(near)
+
+
 def of_cost(_folder: Path | None) -> Iterator[str]:
     """Yield what a posture costs with eight objects."""
     network, [take] = shipped_network(), everyday(WATCHED[:1], TEST_SEED, 1.0)
@@ -159,6 +176,7 @@ PARTS: Mapping[str, tuple[str, Callable[[Path | None], Iterator[str]]]] = {
     "simulated": ("Simulated people", of_simulated),
     "captured": ("Motion capture", of_captured),
     "everyday": ("Everyday things", of_everyday),
+    "cad120": ("Reaches among boxes", of_cad120),
     "pairs": ("Action and object together", of_pairs),
     "cost": ("Cost", of_cost),
 }

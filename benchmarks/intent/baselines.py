@@ -27,12 +27,8 @@ HORIZON_S = 1.5
 
 
 def nearest(take: Take) -> Array:
-    """The nearer an object is to a hand that comes closer to it, the likelier."""
-    scores, before = [], _rows_before(take, STEP_S)
-    for hand_m in _hands(take):
-        apart_m = np.linalg.norm(_objects(take) - hand_m[:, None], axis=2)
-        scores.append(np.where(apart_m[before] - apart_m > RESTING_MPS * STEP_S, -apart_m, -np.inf))
-    return np.fmax(*scores)
+    """The nearer an object is to a hand, the likelier."""
+    return _best_hand(take, lambda hand_m, _: hand_m)
 
 
 def constant_velocity(take: Take) -> Array:

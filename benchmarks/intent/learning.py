@@ -6,8 +6,9 @@ DIR is the folder of the OptiTrack takes; without it the network learns from sim
 """
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
+from typing import NamedTuple, Self
 
 import numpy as np
 from benchmarks.intent.takes import Take, bare, captured, everyday, simulated, without_body
@@ -40,14 +41,25 @@ MOST_OBJECTS = 5
 """Objects in a take."""
 
 
-class Examples:
-    """Instants (N,) of hands: features (N, objects, features), which objects there are, and which is touched next."""
+class Examples(NamedTuple):
+    """Instants (N,) of hands: features (N, objects, features), which objects there are, which is touched next if any,
+    their weights, and the time until the touch (s)."""
 
-    def __init__(self, takes: Sequence[Take], weights: Sequence[float]) -> None:
-        parts = [_of_take(take, weight) for take, weight in zip(takes, weights, strict=True)]
-        self.features, self.present, self.touched, self.weights, self.ahead_s = (
-            np.concatenate(each) for each in zip(*parts, strict=True)
-        )
+    features: Array
+    present: Array
+    touched: Array
+    weights: Array
+    ahead_s: Array
+
+    @classmethod
+    def of(cls, takes: Iterable[Take], weight: float = 1.0) -> Self:
+        """Return the instants of takes, all of the same weight."""
+        return cls(*map(np.concatenate, zip(*(_of_take(take, weight) for take in takes), strict=True)))
+
+    @classmethod
+    def joined(cls, several: Iterable["Examples"]) -> Self:
+        """Return all instants of several."""
+        return cls(*map(np.concatenate, zip(*several, strict=True)))
 
 
 def _of_take(take: Take, weight: float) -> tuple[Array, ...]:
@@ -152,23 +164,15 @@ def background_takes() -> list[Take]:
     return everyday(EVERYDAY_PERSONS, SEED, EVERYDAY_MIN)
 
 
-def weighted(
-    acting: Sequence[Take], background: Sequence[Take], real: Sequence[Take]
-) -> tuple[list[Take], list[float]]:
-    """Return all takes, and the weight of each."""
-    weights = [1.0] * len(acting) + [EVERYDAY_WEIGHT] * len(background) + [CAPTURED_WEIGHT] * len(real)
-    return [*acting, *background, *real], weights
-
-
 def main() -> None:
     """Learn from all that there is, and write the network beside the code that uses it."""
     real = captured(Path(sys.argv[1])) if len(sys.argv) > 1 else []
-    takes, weights = weighted(acting_takes(), background_takes(), real)
-    network = learnt(Examples(takes, weights))
+    simulated_ones = [Examples.of(acting_takes()), Examples.of(background_takes(), EVERYDAY_WEIGHT)]
+    network = learnt(Examples.joined([*simulated_ones, *(Examples.of([take], CAPTURED_WEIGHT) for take in real)]))
     path = Path(action_fusion.intent.__file__).with_name(SHIPPED)
     arrays = {name: getattr(network, name).astype(np.float32) for name in ContactNetwork.__dataclass_fields__}
     np.savez(path, **arrays)
-    print(f"{path.name}: {path.stat().st_size} bytes, learnt from {len(takes)} takes, {len(real)} of them captured")
+    print(f"{path.name}: {path.stat().st_size} bytes, learnt from simulated people and {len(real)} captured takes")
 
 
 if __name__ == "__main__":

@@ -88,7 +88,8 @@ def _right(said: Sequence[tuple[list[Contact], list[Intent]]], seconds: float) -
         for contact in contacts:
             at_ns = contact.stamp_ns - round(seconds * SECOND_NS)
             last = [intent for intent in intents if intent.stamp_ns <= at_ns][-1:]
-            first = next((each for intent in last for each in intent.intended[:1]), None)
+            named = (each for intent in last for each in intent.intended if each.action is not None)
+            first = next(named, None)
             right.append(first is not None and (first.object_id, first.action) == (contact.number, contact.action))
     return float(np.mean(right))
 

@@ -1,11 +1,13 @@
 """Chooses the intents that are worth a line of `actum watch`: one comes with every posture of a reach."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from actum.limits import MOST_STREAMS
 from actum.messages import Intent, Message
 from actum.node import SECOND_NS
 
+LEAST = 0.3
+"""A contact that is less probable has no line: hands always move a little towards something."""
 LEVELS = (0.5, 0.9)
 """Probabilities at which a reach is worth another line: it is likelier than not, and it is all but certain."""
 OVER_NS = SECOND_NS // 2
@@ -30,7 +32,8 @@ class IntentLines:
     def include(self, message: Message | None) -> bool:
         """Tell whether a message is printed: every one but intents that say nothing new.
 
-        New is another likeliest object, a probability that first passes one of `LEVELS`, and the end of the reach.
+        New is another likeliest object of probability `LEAST` or more, a probability that first passes one of `LEVELS`,
+        and the end of the reach.
         """
         if not isinstance(message, Intent) or not message.valid:
             return True
@@ -41,6 +44,10 @@ class IntentLines:
         if not message.intended:
             return before is not None
         likeliest = message.intended[0]
+        if likeliest.probability < LEAST:
+            if before is not None:
+                self._told[person] = replace(before, stamp_ns=message.stamp_ns)
+            return False
         known = before.passed if before is not None and before.object_id == likeliest.object_id else -1
         passed = max(known, sum(likeliest.probability >= level for level in LEVELS))
         self._told[person] = Told(message.stamp_ns, likeliest.object_id, passed)

@@ -31,8 +31,12 @@ def printed(*messages: Message) -> list[Message]:
 
 
 def test_a_reach_has_a_line_at_its_beginning_at_each_level_and_at_its_end() -> None:
-    messages = reach(0.2, 0.3, 0.5, 0.6, 0.91, 0.95, None)
-    assert printed(*messages) == [messages[i] for i in (0, 2, 4, 6)]
+    messages = reach(0.2, 0.3, 0.5, 0.6, 0.91, 0.95, 0.1, None)
+    assert printed(*messages) == [messages[i] for i in (1, 2, 4, 7)]
+
+
+def test_what_is_never_probable_has_no_line() -> None:
+    assert printed(*reach(0.1, 0.2, 0.1, None)) == []
 
 
 def test_a_probability_that_falls_and_rises_again_has_no_line_again() -> None:
@@ -73,7 +77,7 @@ def test_a_line_names_probability_object_hand_and_time() -> None:
 def recording(tmp_path: Path) -> Path:
     path = tmp_path / "reach.mcap"
     with Recorder(path, person="1", source="live") as recorder:
-        for message in reach(0.2, 0.3, 0.6, 0.95, None):
+        for message in reach(0.3, 0.4, 0.6, 0.95, None):
             recorder.write(message, message.stamp_ns)
     return path
 
@@ -81,6 +85,6 @@ def recording(tmp_path: Path) -> Path:
 def test_watch_prints_the_lines_and_with_json_every_message(recording: Path) -> None:
     watched = CliRunner().invoke(app, ["watch", "intent", "--from", str(recording)]).stdout.splitlines()
     assert len(watched) == 4
-    assert watched[0].endswith("0.20  reaches for cup (2) with the right hand, contact in 0.50 s ± 0.15")
+    assert watched[0].endswith("0.30  reaches for cup (2) with the right hand, contact in 0.50 s ± 0.15")
     as_json = CliRunner().invoke(app, ["watch", "intents", "--json", "--from", str(recording)]).stdout.splitlines()
     assert [len(json.loads(each)["intended"]) for each in as_json] == [1, 1, 1, 1, 0]

@@ -4,6 +4,7 @@ import { element } from "../elements.js";
 import { link } from "../link.js";
 import { isShown } from "./people.js";
 
+const LEAST = 0.3;   // hands always move a little towards something
 const CERTAIN = 0.9;
 const SILENT_MS = 500;   // intents come with each posture: the person was lost from view, and no empty one comes
 
@@ -33,7 +34,8 @@ class Ahead {
   show() {
     for (const [agent, { at }] of this.newest) if (performance.now() - at > SILENT_MS) this.newest.delete(agent);
     const { intent } = [...this.newest.values()].find(({ intent: { agent } }) => isShown(agent)) ?? {};
-    const likeliest = intent && nameOf(intent) !== this.done.get(intent.agent) ? intent.intended[0] : undefined;
+    const told = intent && nameOf(intent) !== this.done.get(intent.agent);
+    const likeliest = told ? intent.intended.find(({ probability }) => probability >= LEAST) : undefined;
     this.line.classList.toggle("idle", !likeliest);
     this.line.classList.toggle("certain", (likeliest?.probability ?? 0) >= CERTAIN);
     if (likeliest) this.line.textContent = `→ ${likeliest.object_name}, ${when(likeliest.contact_s)}`;
