@@ -177,11 +177,12 @@ def action_intent(intent: Intent, frame_id: str) -> Any:
 def _contact(intended: Intended) -> Any:
     return made(
         INTENDED_CONTACT,
-        action=intended.action or "",
         object_id=str(intended.object_id),
         object_name=intended.object_name,
         hand=intended.hand,
         probability=intended.probability,
+        action=intended.action or "",
+        action_probability=intended.action_probability or 0.0,
         contact_s=intended.contact_s,
         contact_std_s=intended.contact_std_s,
         place=vector(intended.place_m, "Point"),

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from action_fusion.intake.stream_samples import ObjectsSample
 from action_fusion.intent.approach import FEATURES, approach
 from action_fusion.intent.contact_network import ContactNetwork, shipped_network
-from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_place
+from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_next, touched_place
 from action_fusion.intent.recent_paths import ARMS, OBJECTS_LATE_NS, RecentArms, RecentObjects
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
-from actum.messages import Action, Message, Objects
+from actum.messages import Action, Intended, Message, Objects
 from actum.node import SECOND_NS
 from fused import intents_of
 from scenes import FRAME_NS, acting_on, action
@@ -127,3 +127,49 @@ def test_the_order_of_the_objects_does_not_matter() -> None:
 def test_a_hand_touches_a_thing_at_its_own_side_and_stays_where_it_is_once_there() -> None:
     np.testing.assert_allclose(touched_place(np.array([0.0, 0.0, 1.0]), np.zeros(3)), [0.0, 0.0, 0.12])
     np.testing.assert_allclose(touched_place(np.array([0.0, 0.0, 0.1]), np.zeros(3)), [0.0, 0.0, 0.1])
+
+
+def test_what_both_hands_are_about_to_touch_is_likelier_than_by_either_and_two_things_share_the_next_touch() -> None:
+    np.testing.assert_allclose(touched_next(np.array([[0.8, 0.0], [0.5, 0.0]])), [0.9, 0.0])
+    np.testing.assert_allclose(touched_next(np.array([[0.9, 0.0], [0.0, 0.9]])), [0.5, 0.5])
+
+
+def newest(*also: Message) -> Intended:
+    """Return the likeliest contact just before the hand arrives."""
+    return intents_of(ActionFusion(Settings()), *also, *stream(0.75))[-1].intended[0]
+
+
+def partial(**fields: object) -> Message:
+    return action("lift", 0.0, 0.4, final=False, **fields)
+
+
+def test_the_action_that_goes_on_has_its_confidence_as_its_share_of_the_contact() -> None:
+    alone, doing = newest(), newest(partial(confidence=0.5))
+    assert (alone.action, alone.action_probability) == (None, None)
+    assert (doing.action, doing.action_probability) == ("lift", pytest.approx(0.5 * doing.probability))
+    assert doing.probability == alone.probability
+
+
+@pytest.mark.parametrize(("confidence", "share"), [(2.0, 1.0), (-1.0, 0.0)])
+def test_a_confidence_that_is_no_probability_counts_as_the_nearest_one(confidence: float, share: float) -> None:
+    doing = newest(partial(confidence=confidence))
+    assert doing.action_probability == pytest.approx(share * doing.probability)
+
+
+def test_an_action_that_is_marked_as_the_other_hands_is_not_this_ones() -> None:
+    assert newest(partial(hand="right")).action == "lift"
+    assert newest(partial(hand="left")).action is None
+
+
+def test_what_an_earlier_session_saw_is_not_there() -> None:
+    objects = RecentObjects()
+    objects.append(seen(0, cup=(0.0, 0.0, 1.0)))
+    objects.append(ObjectsSample(SECOND_NS, "anew", {2: np.ones(3)}, {2: "box"}, frozenset(), {}))
+    assert objects.at(2 * SECOND_NS, 0)[0] == {2: "box"}
+
+
+def test_a_hand_in_the_middle_of_a_thing_is_measured_all_the_same() -> None:
+    arms, objects = RecentArms(), RecentObjects()
+    objects.append(seen(0, here=(0.0, 0.0, 0.0)))
+    arms.append(SECOND_NS, np.zeros((len(ARMS), 3)))
+    assert np.isfinite(approach(arms, objects, SECOND_NS).features).all()

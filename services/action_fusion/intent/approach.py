@@ -22,6 +22,8 @@ SHORT_M = 0.02
 """A hand's way (m) that is no more than noise, and has no direction."""
 NEAR_M = 0.03
 """Added to a distance before its logarithm is taken (m)."""
+SMALLEST_M = 1e-9
+"""A hand nearer to an object's middle (m) is in no direction from it."""
 FASTEST_MPS = 1.0
 """Speed (m/s) above which an object simply is fast."""
 HIDDEN = 4
@@ -64,7 +66,7 @@ def approach(arms: RecentArms, objects: RecentObjects, stamp_ns: int) -> Approac
         *ways,
         np.linalg.norm(now_m - ahead_m[:, None], axis=2),
         np.broadcast_to(speeds_mps, distances_m.shape),
-        *_of_body(joints_m, apart_m / distances_m[..., None], now_m),
+        *_of_body(joints_m, apart_m / np.maximum(distances_m, SMALLEST_M)[..., None], now_m),
     ]
     return Approach(names, np.stack(features, axis=2), hands_m[0], now_m)
 
@@ -80,7 +82,7 @@ def _ways(hands_m: Array, earlier_m: Array, objects_m: Array) -> list[Array]:
         objects_m: (n, 3).
     """
     to_object = objects_m - earlier_m[:, :, None]
-    to_object /= np.linalg.norm(to_object, axis=3)[..., None]
+    to_object /= np.maximum(np.linalg.norm(to_object, axis=3), SMALLEST_M)[..., None]
     way = hands_m - earlier_m
     towards = np.einsum("wsni,wsi->wsn", to_object, way)
     lengths = np.linalg.norm(way, axis=2)[..., None]

@@ -1,18 +1,18 @@
 """Says with each posture which objects a person is about to touch, what is done then, and when."""
 
-from collections import OrderedDict
+from collections import OrderedDict, deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
-from action_fusion.intent.approach import Approach, approach
-from action_fusion.intent.contact_network import ContactNetwork, Foreseen, shipped_network
-from action_fusion.intent.recent_paths import SIDES, RecentArms, RecentObjects, arms_of
+from action_fusion.intent.approach import approach
+from action_fusion.intent.contact_network import ContactNetwork, shipped_network
+from action_fusion.intent.recent_paths import LONGEST_GAP_NS, SIDES, RecentArms, RecentObjects, arms_of
 from actum.arrays import Array
 from actum.limits import MOST_STREAMS
-from actum.messages import Action, Intended, Intent
+from actum.messages import Action, Hand, Intended, Intent
 from actum.node import SECOND_NS
 
 LEAST = 0.05
@@ -20,6 +20,8 @@ LEAST = 0.05
 ACTIONS_LATE_NS = SECOND_NS // 10
 """How much older (ns) a partial action is than the posture that it is used with: so what is said does not depend on
 which message came first."""
+MOST_ACTIONS = 128
+"""Actions kept of a person: two seconds of two segments at 30 a second."""
 ACTION_LASTS_NS = SECOND_NS // 2
 """How long (ns) a partial action counts: the next comes with the next frame."""
 TOUCH_M = 0.12
@@ -30,25 +32,23 @@ SOONEST_S, LATEST_S = 0.02, 1.5
 
 @dataclass
 class Person:
-    """What is known of a person: the way of the arms, the newest partial actions, and whether a reach is under way."""
+    """What is known of a person in one session: the arms, the newest actions, and the latest reach."""
 
+    session_id: str = ""
     arms: RecentArms = field(default_factory=RecentArms)
-    actions: list[Action] = field(default_factory=list)
-    reaches: bool = False
-
-    def take(self, action: Action) -> None:
-        """Take a partial action, or the final one that ends it."""
-        if action.final:
-            self.actions = [each for each in self.actions if each.segment_id != action.segment_id]
-        else:
-            self.actions = [each for each in self.actions if each.stamp_ns > action.stamp_ns - SECOND_NS] + [action]
+    actions: deque[Action] = field(default_factory=lambda: deque(maxlen=MOST_ACTIONS))
+    reached_ns: int | None = None
 
     def ongoing(self, stamp_ns: int) -> Action | None:
-        """Return the partial action that goes on at a stamp, as far as it is known everywhere."""
+        """Return the partial action that goes on at a stamp, as far as it is known everywhere by then."""
         known = [each for each in self.actions if each.stamp_ns <= stamp_ns - ACTIONS_LATE_NS]
-        if not known or known[-1].stamp_ns < stamp_ns - ACTIONS_LATE_NS - ACTION_LASTS_NS:
-            return None
-        return known[-1]
+        ended = {each.segment_id for each in known if each.final}
+        going = [
+            each
+            for each in known
+            if each.segment_id not in ended and each.stamp_ns >= stamp_ns - ACTIONS_LATE_NS - ACTION_LASTS_NS
+        ]
+        return max(going, key=lambda each: (each.stamp_ns, each.segment_id), default=None)
 
 
 class Intents:
@@ -67,13 +67,14 @@ class Intents:
         """Return the intent after a valid posture; None where no reach is under way and none has just ended."""
         assert sample.body is not None
         person = self._person(agent)
+        if person.session_id != sample.session_id:
+            person = self._people[agent] = Person(sample.session_id)
         person.arms.append(sample.stamp_ns, arms_of(sample.body))
         ongoing = person.ongoing(sample.stamp_ns)
-        seen = approach(person.arms, self._objects, sample.stamp_ns)
-        foreseen = self._network.foresee(seen.features)
-        likely = sorted(self._intended(seen, foreseen, ongoing), key=lambda each: -each.probability)
-        ended, person.reaches = person.reaches and not likely, bool(likely)
-        if not likely and not ended:
+        likely = sorted(self._intended(person.arms, sample.stamp_ns, ongoing), key=lambda each: -each.probability)
+        before_ns, person.reached_ns = person.reached_ns, sample.stamp_ns if likely else None
+        has_ended = before_ns is not None and sample.stamp_ns - before_ns <= LONGEST_GAP_NS
+        if not likely and not has_ended:
             return None
         return Intent.of_checked(
             stamp_ns=sample.stamp_ns,
@@ -91,8 +92,8 @@ class Intents:
 
     def action(self, action: Action) -> None:
         """Take a partial action, or the final one that ends it."""
-        if action.agent and action.valid:
-            self._person(action.agent).take(action)
+        if action.agent and (action.valid or action.final):
+            self._person(action.agent).actions.append(action)
 
     def clear(self) -> None:
         """Forget everything, after a restart of a stream."""
@@ -107,32 +108,48 @@ class Intents:
             self._people.popitem(last=False)
         return person
 
-    def _intended(self, seen: Approach, foreseen: Foreseen, ongoing: Action | None) -> Iterator[Intended]:
-        """Yield the contacts of both hands that are probable: with the action that goes on, and with another one.
-
-        Each hand has probabilities of its own, as if the other did nothing; together they are scaled to sum to 1 at
-        most.
-        """
-        scale = 1 / max(float(foreseen.probability.sum()), 1.0)
-        acts: list[tuple[str | None, float]] = [(None, 1.0)]
-        if ongoing is not None and ongoing.action is not None and not ongoing.unknown:
-            acts = [(ongoing.action, ongoing.confidence), (None, 1 - ongoing.confidence)]
-        for hand, k in np.argwhere(scale * foreseen.probability >= LEAST).tolist():
-            number, name = list(seen.names.items())[k]
+    def _intended(self, arms: RecentArms, stamp_ns: int, ongoing: Action | None) -> Iterator[Intended]:
+        """Yield the contacts that are probable, each by the likelier hand."""
+        seen = approach(arms, self._objects, stamp_ns) if self._objects else None
+        if seen is None:
+            return
+        foreseen = self._network.foresee(seen.features)
+        touched = touched_next(foreseen.probability)
+        for k, (number, name) in enumerate(seen.names.items()):
+            if touched[k] < LEAST:
+                continue
+            hand = int(foreseen.probability[:, k].argmax())
             contact_s = min(max(float(foreseen.contact_s[hand, k]), SOONEST_S), LATEST_S)
-            for action, share in acts:
-                probability = scale * float(foreseen.probability[hand, k]) * share
-                if probability >= LEAST:
-                    yield Intended(
-                        action=action,
-                        object_id=number,
-                        object_name=name,
-                        hand=SIDES[hand],
-                        probability=probability,
-                        contact_s=contact_s,
-                        contact_std_s=contact_s * float(self._network.time_sd),
-                        place_m=touched_place(seen.hands_m[hand], seen.objects_m[k]).tolist(),
-                    )
+            action, confidence = _done(ongoing, SIDES[hand])
+            yield Intended(
+                object_id=number,
+                object_name=name,
+                hand=SIDES[hand],
+                probability=float(touched[k]),
+                action=action,
+                action_probability=None if action is None else float(touched[k]) * confidence,
+                contact_s=contact_s,
+                contact_std_s=contact_s * float(self._network.time_sd),
+                place_m=touched_place(seen.hands_m[hand], seen.objects_m[k]).tolist(),
+            )
+
+
+def touched_next(probability: Array) -> Array:
+    """Return the probability that each of n objects is touched next by either hand, (n,), of that of each hand (2, n).
+
+    The hands are independent, 1 - (1 - p)(1 - q), and all objects together are scaled to sum to 1 at most: what both
+    are about to touch at once, either may touch next.
+    """
+    by_either = 1 - np.prod(1 - probability, axis=0)
+    touched: Array = by_either / max(float(by_either.sum()), 1.0)
+    return touched
+
+
+def _done(ongoing: Action | None, hand: Hand) -> tuple[str | None, float]:
+    """Return the action that a hand may do, and its confidence; None for none, and for one of the other hand."""
+    if ongoing is None or ongoing.action is None or ongoing.unknown or ongoing.hand not in (None, hand):
+        return None, 0.0
+    return ongoing.action, min(max(ongoing.confidence, 0.0), 1.0)
 
 
 def touched_place(hand_m: Array, object_m: Array) -> Array:

@@ -68,9 +68,13 @@ class RecentObjects:
     def __init__(self) -> None:
         self._tracks: dict[int, tuple[deque[int], deque[Array]]] = {}
         self._names: dict[int, str] = {}
+        self._session_id = ""
 
     def append(self, sample: ObjectsSample) -> None:
-        """Add the objects of the next image; those not seen for long are forgotten."""
+        """Add the objects of the next image; those not seen for long, and of another session, are forgotten."""
+        if sample.session_id != self._session_id:
+            self.clear()
+            self._session_id = sample.session_id
         for number, position_m in sample.positions_m.items():
             stamps_ns, places_m = self._tracks.setdefault(number, (deque(), deque()))
             while len(stamps_ns) > 1 and stamps_ns[1] < sample.stamp_ns - TRACK_NS:
@@ -82,6 +86,9 @@ class RecentObjects:
         gone = [number for number, (at_ns, _) in self._tracks.items() if at_ns[-1] < sample.stamp_ns - KNOWN_NS]
         for number in gone:
             del self._tracks[number], self._names[number]
+
+    def __bool__(self) -> bool:
+        return bool(self._tracks)
 
     def clear(self) -> None:
         """Forget everything."""

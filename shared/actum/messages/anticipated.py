@@ -16,23 +16,23 @@ from actum.messages.base import (
     SegmentId,
 )
 
-MOST_INTENDED = 2 * MOST_OBJECTS
-"""Most contacts in one message: one of each hand with each object."""
-
 
 class Intended(Model):
-    """A contact of one hand with one object that may be about to happen."""
+    """A contact with one object that may be about to happen."""
 
-    action: Name | None
-    """The likeliest ongoing action that people do to objects; null where none is known."""
     object_id: int
     """The object's number."""
     object_name: Name
     """What the object is called."""
     hand: Hand
-    """The hand that is on its way."""
+    """The hand that is on its way; of both hands the likelier one."""
     probability: FiniteFloat
-    """The probability that this hand touches this object within the next 1.5 s and does the action to it, 0 to 1."""
+    """The probability that this object is what the person touches next, within 1.5 s, 0 to 1."""
+    action: Name | None = None
+    """The likeliest ongoing action; null where none is known, or where it is marked as one of the other hand."""
+    action_probability: FiniteFloat | None = None
+    """The probability that the person touches this object next and does `action` to it: `probability` times the
+    action's confidence; null where `action` is."""
     contact_s: FiniteFloat
     """The expected time from `stamp_ns` to the contact (s)."""
     contact_std_s: Deviation
@@ -47,7 +47,7 @@ class Intent(Message):
     SCHEMA = "actum.intent"
     agent: AgentId
     """Who is about to touch something."""
-    intended: Annotated[list[Intended], Field(max_length=MOST_INTENDED)]
+    intended: Annotated[list[Intended], Field(max_length=MOST_OBJECTS)]
     """The possible contacts, the likeliest first. The probabilities sum to 1 at most; the rest is the probability that
     none of these contacts happens. Empty once, when the reach is over; nothing follows until the next reach."""
     completeness: FiniteFloat | None = None

@@ -121,7 +121,10 @@ class Inbox:
             while sample is not None:
                 if not self._left_out or _digest(sample) not in self._left_out:
                     receive(sample)
-                sample = subscriber.try_recv()
+                try:
+                    sample = subscriber.try_recv()
+                except zenoh.ZError:  # it was undeclared meanwhile
+                    return
 
 
 @dataclass(frozen=True)

@@ -34,9 +34,9 @@ N = TypeVar("N")
 UNUSABLE = 2
 """Exit code of a process whose settings cannot be used."""
 COLLECTION = (5_000, 4, 100)
-"""Objects made before the young are searched for cycles, and how often that is before the older ones and all are. All
-are a million where crowds are watched, and searching them stops the service for a tenth of a second; Python's own
-limits would do that every second."""
+"""When Python's collector looks for cycles: among its newest objects once so many were made; after every four of these
+searches also among older ones; and after a hundred of those among all. With crowds there are a million objects, and to
+search all of them stops the service for a tenth of a second. By Python's own limits that would be every second."""
 TAKEN = 3
 """Exit code of a process whose service another process runs already."""
 

@@ -24,8 +24,9 @@ meanwhile, before it gives up waiting for it."""
 REMEMBERED = 1024
 """Answers remembered: more than publishers keep for late subscribers on all keys together."""
 _TURN = threading.Lock()
-"""Held by the one service of this process that handles a message now. Threads that work in Python at the same time only
-wait for its lock at every call that gives it away. Images are read outside of it."""
+"""The lock of all services of this process that read no images: one handles a message, the others wait. Only one thread
+runs Python at a time anyway, and threads that take turns within a message cost more than threads that take turns after
+it. Images are mostly read outside of Python, several at a time."""
 
 
 class StepService(Service):

@@ -6,6 +6,7 @@ import { isShown } from "./people.js";
 
 const LEAST = 0.3;   // hands always move a little towards something
 const CERTAIN = 0.9;
+const MOST_PEOPLE = 64;   // people come with ever new numbers
 const SILENT_MS = 500;   // intents come with each posture: the person was lost from view, and no empty one comes
 
 export function ahead() {
@@ -24,6 +25,7 @@ class Ahead {
       this.show();
     });
     link.on("event", (event) => {
+      if (this.done.size > MOST_PEOPLE) this.done.clear();
       this.done.set(event.agent, nameOf(event));
       this.newest.delete(event.agent);
       this.show();
