@@ -22,6 +22,7 @@ from actum_command.commands.training_commands import (
     PRESETS_SHOWN,
     SEED_HELP,
     SET_HELP,
+    flags_given,
     preset_named,
     refuse_place,
 )
@@ -33,6 +34,9 @@ from actum_model_trainer.continuous.watching import NoSpotterError, found_by
 from actum_model_trainer.continuous_cross_validation import found_without_each, models_without
 from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import evaluate
+from actum_model_trainer.foreseeing.intent_report import intent_report
+from actum_model_trainer.foreseeing.intent_scores import intent_scores
+from actum_model_trainer.foreseeing.recorded import recorded_in
 from actum_model_trainer.report import report
 from actum_model_trainer.side_by_side import at_most
 from actum_model_trainer.training import TrainingError
@@ -45,17 +49,31 @@ from som_classifier.settings import Settings
 CLASSIFIER = "som_classifier"
 """The service that has the settings of the search."""
 ONLY_LEFT_OUT = "used only with --leave-one-person-out: "
+INTENT_HELP = (
+    "test without a model file how early and how rightly the contacts of hands with objects are foreseen. A contact is "
+    "the first motion of an object in a labelled action; the recordings must contain the objects"
+)
+OF_MODELS = {
+    "continuous": "--continuous",
+    "by_person": "--leave-one-person-out",
+    "preset": "--preset",
+    "settings": "--set",
+    "seed": "--seed",
+    "jobs": "--jobs",
+}
+"""The options, by parameter, that mean nothing to intents."""
 
 
 @with_flags_of(CLASSIFIER, names=SEARCH_SETTINGS)
 def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
+    context: typer.Context,
     given: Given,
     files: Annotated[
         list[Path],
         typer.Argument(
             help=(
-                "the model file to test (none with --leave-one-person-out), then labelled recordings or folders "
-                "of recordings"
+                "the model file to test (none with --leave-one-person-out or --intent), then labelled recordings or "
+                "folders of recordings"
             )
         ),
     ],
@@ -83,6 +101,7 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
             ),
         ),
     ] = False,
+    intent: Annotated[bool, typer.Option("--intent", help=INTENT_HELP)] = False,
     preset: Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=ONLY_LEFT_OUT + PRESET_HELP)] = DEFAULT.name,
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=ONLY_LEFT_OUT + SET_HELP)
@@ -97,6 +116,10 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     """
     if json_file is not None:
         refuse_place(json_file, ".json")
+    if intent:
+        _refuse_with_intent(context, given)
+        _evaluate_intents(chosen(files, person, with_excluded), json_file)
+        return
     if not by_person and len(files) == 1:
         fail(
             f"a model and at least one recording are needed, but only {files[0]} was given: give both, or use "
@@ -163,6 +186,31 @@ def _evaluate_continuously(
     console.print(continuous_report(scores, time.monotonic() - began_s))
     if json_file is not None:
         write_text(json_file, json.dumps(found.as_json() | {"scores": scores.as_json()}, indent=1))
+
+
+def _refuse_with_intent(context: typer.Context, given: Given) -> None:
+    """Fail where an option is given that has to do with models of actions, of which intents need none."""
+    if flags := [*flags_given(context, OF_MODELS), *map(flag_of, given)]:
+        fail(f"--intent tests recordings without a model of actions: leave out {' and '.join(flags)}")
+
+
+def _evaluate_intents(recordings: Sequence[Recording], json_file: Path | None) -> None:
+    """Foresee the contacts in recordings, and print the scores."""
+    began_s = time.monotonic()
+    with failing_on(RecordingError), bars() as progress:
+        recorded = recorded_in(recordings, progress)
+        scores = intent_scores(recorded, progress) if recorded.contacts else None
+    tell_unread(recordings)
+    if not recorded.takes:
+        fail("the given recordings contain nobody together with an object: record while objects are tracked")
+    if scores is None:
+        fail(
+            f"the given recordings contain no contact ({recorded.without_contact} labelled actions without one): "
+            "record labelled actions in which a hand moves an object"
+        )
+    console.print(intent_report(scores, time.monotonic() - began_s))
+    if json_file is not None:
+        write_text(json_file, json.dumps(scores.as_json(), indent=1))
 
 
 def segmentation_of(given: Given) -> Segmentation:
