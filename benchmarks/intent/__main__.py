@@ -12,8 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-from benchmarks.intent import baselines, cad120, pairs
+from benchmarks.intent import cad120, pairs
 from benchmarks.intent.learning import (
     CAPTURED_WEIGHT,
     EVERYDAY_WEIGHT,
@@ -21,24 +20,25 @@ from benchmarks.intent.learning import (
     SEED,
     Examples,
     background_takes,
-    features_of,
     learnt,
 )
-from benchmarks.intent.scoring import (
+from benchmarks.intent.takes import LAYOUTS, bare, captured, everyday, simulated, without_body
+from benchmarks.page import measure_page
+
+from action_fusion.intent.contact_network import shipped_network
+from actum_model_trainer.foreseeing.baselines import compared
+from actum_model_trainer.foreseeing.said import said_by
+from actum_model_trainer.foreseeing.scoring import (
     ALARM,
     BEFORE_S,
     HORIZON_S,
     PRECISION,
     Said,
-    before,
+    Scores,
     calibration_error,
-    earliest,
     false_alarms_per_min,
-)  # fmt: skip
-from benchmarks.intent.takes import LAYOUTS, Take, bare, captured, everyday, simulated, without_body
-from benchmarks.page import measure_page
-
-from action_fusion.intent.contact_network import ContactNetwork, shipped_network
+)
+from actum_model_trainer.foreseeing.takes import Take
 
 PAGE = Path(__file__).with_name("results.md")
 TESTED, TEST_SEED = range(101, 109), 5
@@ -57,45 +57,16 @@ HEAD = (
 )
 
 
-def said_by(network: ContactNetwork, take: Take) -> Said:
-    """Return what a network says at each frame: each object's probability that either hand touches it."""
-    scores, times_s = [], []
-    for features in features_of(take):
-        foreseen = network.foresee(features)
-        together = foreseen.probability.sum(axis=0)
-        scores.append(together / max(together.sum(), 1.0))
-        nearer = foreseen.probability.argmax(axis=0)
-        times_s.append(np.minimum(foreseen.contact_s[nearer, np.arange(len(nearer))], HORIZON_S))
-    return Said(take, np.array(scores), np.array(times_s))
+def table(ours: Sequence[Said], training: Sequence[Take]) -> str:
+    """Return a table of ours and the baselines on the same takes."""
+    return "\n".join([HEAD, *(_row(name, scores) for name, scores in compared(ours, training).items())])
 
 
-def simpler(training: Sequence[Take]) -> dict[str, baselines.Method]:
-    """Return the baselines by name."""
-    return {
-        "nearest object": baselines.nearest,
-        "constant velocity": baselines.constant_velocity,
-        "minimum jerk": baselines.minimum_jerk,
-        "nearest training path": baselines.of_nearest_path(training),
-        "never": baselines.never,
-    }
-
-
-def compared(ours: Sequence[Said], training: Sequence[Take]) -> Iterator[str]:
-    """Yield a table of ours and the baselines on the same takes."""
-    by_method = {"actum": list(ours)}
-    for name, method in simpler(training).items():
-        by_method[name] = [Said(each.take, method(each.take)) for each in ours]
-    yield "\n".join([HEAD, *(_row(name, said) for name, said in by_method.items())])
-
-
-def _row(name: str, said: Sequence[Said]) -> str:
-    best = earliest(said)
-    then = [before(said, seconds) for seconds in BEFORE_S]
-    at_half = then[BEFORE_S.index(0.5)]
-    probable = at_half.time_error_s == at_half.time_error_s
+def _row(name: str, scores: Scores) -> str:
+    best, half = scores.ahead, scores.at_half
     cells = [name, f"{best.median_s:.2f}", f"{best.precision:.2f}", f"{best.recall:.2f}"]
-    cells += [f"{each.right:.2f}" for each in then]
-    cells += [f"{at_half.brier:.2f}", f"{at_half.time_error_s:.2f}"] if probable else ["", ""]
+    cells += [f"{each.right:.2f}" for each in scores.before]
+    cells += [f"{half.brier:.2f}", f"{half.time_error_s:.2f}"] if scores.is_probable else ["", ""]
     return f"| {' | '.join(cells)} |"
 
 
@@ -109,7 +80,7 @@ def of_simulated(_folder: Path | None) -> Iterator[str]:
     )
     for count in sorted({objects for objects, _ in LAYOUTS}):
         yield f"### {count} objects"
-        yield from compared([each for each in said if len(each.take.objects_m) == count], training)
+        yield table([each for each in said if len(each.take.objects_m) == count], training)
     yield f"Expected calibration error of the object's probability, all takes: {calibration_error(said):.3f}."
 
 
@@ -132,7 +103,7 @@ def of_captured(folder: Path | None) -> Iterator[str]:
         f"{sum(len(each.take.contacts) for each in said)} contacts: first motions after a labelled approach, or its "
         "end. The nearest training path is one of simulated people."
     )
-    yield from compared(said, acting)
+    yield table(said, acting)
     yield f"Expected calibration error: {calibration_error(said):.3f}."
 
 

@@ -5,14 +5,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from benchmarks.intent import baselines
-from benchmarks.intent.learning import features_of
-from benchmarks.intent.takes import Contact, Take
 
 from action_fusion.intent.contact_network import shipped_network
 from action_fusion.intent.recent_paths import ARMS
 from actum.arrays import Array
 from actum.node import SECOND_NS
+from actum_model_trainer.foreseeing import baselines
+from actum_model_trainer.foreseeing.said import features_of
+from actum_model_trainer.foreseeing.takes import Contact, Take
 
 FILE = "lighten_poses.npz"
 RATE_HZ = 30

@@ -11,17 +11,17 @@ from pathlib import Path
 from typing import NamedTuple, Self
 
 import numpy as np
-from benchmarks.intent.takes import Take, bare, captured, everyday, simulated, without_body
+from benchmarks.intent.takes import bare, captured, everyday, simulated, without_body
 
 import action_fusion.intent
-from action_fusion.intent.approach import FEATURES, approach
+from action_fusion.intent.approach import FEATURES
 from action_fusion.intent.contact_network import SHIPPED, WIDEST, ContactNetwork
-from action_fusion.intent.recent_paths import RecentArms, RecentObjects
 from actum.arrays import Array
 from actum.node import SECOND_NS
+from actum_model_trainer.foreseeing.said import features_of
+from actum_model_trainer.foreseeing.scoring import HORIZON_S
+from actum_model_trainer.foreseeing.takes import Take
 
-HORIZON_S = 1.5
-"""How far ahead a contact is foreseen (s)."""
 PERSONS, SEED = range(1, 25), 3
 """The simulated people learnt from; others are tested."""
 EVERYDAY_PERSONS, EVERYDAY_MIN = range(30, 90), 2.0
@@ -79,19 +79,6 @@ def _of_take(take: Take, weight: float) -> tuple[Array, ...]:
     present = np.broadcast_to(np.arange(MOST_OBJECTS) < objects, touched.shape)
     weights = weight * np.where(near, 1.0, STRIDE)
     return padded[kept], present[kept], touched[kept], weights[kept], next_s[kept]
-
-
-def features_of(take: Take) -> Array:
-    """Return the features of every frame, (T, 2, objects, features), as they are computed live; NaN at the start."""
-    arms, objects = RecentArms(), RecentObjects()
-    features = np.full((len(take.stamps_ns), 2, len(take.objects_m), FEATURES), np.nan)
-    numbers = sorted(take.objects_m)
-    for row, (stamp_ns, sighted) in enumerate(zip(take.stamps_ns.tolist(), take.sightings(), strict=True)):
-        objects.append(sighted)
-        arms.append(stamp_ns, take.arms_m[row])
-        seen = approach(arms, objects, stamp_ns)
-        features[row, :, [numbers.index(number) for number in seen.names]] = seen.features.swapaxes(0, 1)
-    return features
 
 
 def learnt(examples: Examples, networks: int = NETWORKS, steps: int = STEPS) -> ContactNetwork:

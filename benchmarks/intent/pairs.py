@@ -3,14 +3,15 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from benchmarks.intent.scoring import BEFORE_S
-from benchmarks.intent.takes import LAYOUTS, OBJECT_SD_M, TAIL_S, Contact, contacts_of, scene_of
+from benchmarks.intent.takes import LAYOUTS, OBJECT_SD_M, TAIL_S, contacts_of, scene_of
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings as FusionSettings
 from actum.messages import Intent, Message, Objects, Segment, TrackedObject
 from actum.node import SECOND_NS
 from actum_command.simulated_model import SIMULATED_MODEL
+from actum_model_trainer.foreseeing.scoring import BEFORE_S
+from actum_model_trainer.foreseeing.takes import Contact
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.simulated_scene import Scene, SceneState

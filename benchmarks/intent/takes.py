@@ -1,18 +1,16 @@
-"""Takes of hands, arms and objects with the contacts in them: of simulated people, and of motion capture."""
+"""Takes of simulated people, and of motion capture."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from benchmarks.bimacs_tracks import read
 
-from action_fusion.intake.stream_samples import ObjectsSample
 from action_fusion.intent.recent_paths import ARMS, SIDES
-from actum.arrays import Array
 from actum.node import SECOND_NS
 from actum_dataset_importer.bimacs import read_take, take_files
+from actum_model_trainer.foreseeing.takes import Contact, Take
 from scene_simulator.everyday import chosen
 from scene_simulator.noise import SkeletonNoise
 from scene_simulator.parameters import Parameters, load_parameters
@@ -32,39 +30,6 @@ OBJECT_SD_M = 0.003
 """Standard deviation of an object's measured place (m), as the tracker has it at two metres."""
 LATEST_MOTION_S = 1.0
 """How long after a labelled approach of the motion capture the object may begin to move (s)."""
-
-
-class Contact(NamedTuple):
-    """A hand's first touch of an object in one reach: the object's first motion; for one that does not move, the end of
-    the labelled approach, or of the reach with which somebody points at it."""
-
-    stamp_ns: int
-    hand: int
-    number: int
-    action: str
-
-
-@dataclass(frozen=True)
-class Take:
-    """T frames: stamps (T,), joints (T, 6, 3) in the order of `ARMS`, NaN where unknown, objects by number (T, 3), all
-    in the camera frame; and the contacts, by stamp."""
-
-    name: str
-    stamps_ns: np.ndarray
-    arms_m: Array
-    objects_m: Mapping[int, Array]
-    contacts: Sequence[Contact]
-
-    @property
-    def minutes(self) -> float:
-        return float(self.stamps_ns[-1] - self.stamps_ns[0]) / (60 * SECOND_NS)
-
-    def sightings(self) -> Iterator[ObjectsSample]:
-        """Yield the objects of every frame."""
-        names = {number: f"object {number}" for number in self.objects_m}
-        for row, stamp_ns in enumerate(self.stamps_ns.tolist()):
-            seen = {n: path_m[row] for n, path_m in self.objects_m.items() if np.isfinite(path_m[row]).all()}
-            yield ObjectsSample(stamp_ns, self.name, seen, names, frozenset(), {})
 
 
 def simulated(persons: Sequence[int], seed: int) -> list[Take]:

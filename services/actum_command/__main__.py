@@ -14,6 +14,7 @@ with needs_extra("actum-command"):
         demo_command,
         deploy_commands,
         doctor_command,
+        evaluate_command,
         foxglove_commands,
         inspect_command,
         label_commands,
@@ -81,7 +82,7 @@ app.add_typer(label_commands.app, name="label")
 _add_picture_commands()
 app.add_typer(pose_model_commands.app, name="models")
 app.command("train")(training_commands.train_command)
-app.command("evaluate")(training_commands.evaluate_command)
+app.command("evaluate")(evaluate_command.evaluate_command)
 app.command("tune")(tune_command.tune)
 app.command("inspect")(inspect_command.inspect)
 app.command("simulate")(scene_commands.simulate)

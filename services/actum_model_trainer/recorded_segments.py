@@ -22,14 +22,19 @@ def sensors(recording: Recording) -> list[str]:
     return sorted({mark.sensor for mark in recording.messages((keys.SEGMENT,))})
 
 
-def classifier_input(recording: Recording, sensor: str) -> Iterator[tuple[int, Message]]:
-    """Yield each message that the live classifier of this sensor would have received, with its stamp (ns)."""
+def classifier_input(
+    recording: Recording, sensor: str, others: tuple[keys.Topic, ...] = ()
+) -> Iterator[tuple[int, Message]]:
+    """Yield each message that the live classifier of this sensor would have received, with its stamp (ns).
+
+    Those of the topics `others` come as they were recorded.
+    """
     preprocessor, numbering = PosePreprocessor(PoseSettings.defaults()), Numbering()
-    for message in recording.messages(STREAMS):
+    for message in recording.messages((*STREAMS, *others)):
         if message.sensor == sensor:
             arriving = preprocessor.handle(message) if isinstance(message, Skeleton) else [_played(message)]
-            for posture_or_mark in arriving:
-                yield message.stamp_ns, numbering.numbered(posture_or_mark)
+            for arrived in arriving:
+                yield message.stamp_ns, numbering.numbered(arrived)
 
 
 def _played(mark: Message) -> Message:

@@ -22,11 +22,11 @@ from actum.settings import ServiceSettings
 from actum_command.__main__ import app
 from actum_command.commands import (
     demo_command,
+    evaluate_command,
     recording_options,
     segment_commands,
     system_commands,
     terminal,
-    training_commands,
 )
 from actum_command.commands.plain_help import PlainCommand, PlainTyper
 from actum_command.commands.training_commands import preset_named
@@ -248,8 +248,8 @@ def test_what_is_found_without_marks_is_told_and_written(
 
     first = Detection("a.mcap", 1, 0, 10**9, 2 * 10**9, "lift", 0.9)
     truth, truth_missed = Truth("a.mcap", 1, 0, 10**9, "lift"), Truth("a.mcap", 1, 5 * 10**9, 6 * 10**9, "push")
-    monkeypatch.setattr(training_commands, "load_model", lambda _: tiny_model())
-    monkeypatch.setattr(training_commands, "found_by", found)
+    monkeypatch.setattr(evaluate_command, "load_model", lambda _: tiny_model())
+    monkeypatch.setattr(evaluate_command, "found_by", found)
     report = tmp_path / "report.json"
     done = invoke("evaluate", "--continuous", "m.npz", examples, "--json", report)
     assert "1 of 2 actions found, 0 false detections" in done.output
@@ -303,7 +303,7 @@ def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
 ) -> None:
     (tmp_path / "folder").mkdir()
     (tmp_path / "file").touch()
-    monkeypatch.setattr(training_commands, "load_model", lambda _: pytest.fail("the model was loaded"))
+    monkeypatch.setattr(evaluate_command, "load_model", lambda _: pytest.fail("the model was loaded"))
     monkeypatch.setattr(recording_options, "select", lambda *_: pytest.fail("the recordings were opened"))
     assert place in refused("evaluate", "m.npz", "a.mcap", "--json", str(tmp_path / place))
     assert place in refused("train", "a.mcap", "-o", str(tmp_path / place))

@@ -7,7 +7,7 @@ import pytest
 import typer
 
 from actum.command_line import from_command_line
-from actum_command.commands.training_commands import segmentation_of
+from actum_command.commands.evaluate_command import segmentation_of
 from actum_command.commands.tune_command import flags_for, refuse_other_settings, settings_file
 from som_classifier.segmentation import Segmentation
 from som_classifier.settings import Settings

@@ -1,32 +1,18 @@
-"""`actum train` and `actum evaluate`."""
+"""`actum train`."""
 
-import json
 import time
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from actum.command_line import from_command_line
 from actum.recording import Recording, RecordingError
-from actum.settings import complaint
 from actum_command.commands.progress_bars import bars
 from actum_command.commands.recording_options import AllOption, PersonOption, chosen, tell_unread
-from actum_command.commands.service_flags import with_flags_of
-from actum_command.commands.terminal import console, fail, failing_on, refuse_unwritable, say, write_text
-from actum_command.commands.tune_command import SEARCH_SETTINGS, flags_for
-from actum_command.service_settings import Given, arguments_of, flag_of
+from actum_command.commands.terminal import fail, failing_on, refuse_unwritable, say
 from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.background import shipped
-from actum_model_trainer.continuous.continuous_report import continuous_report
-from actum_model_trainer.continuous.scoring import scores_of
-from actum_model_trainer.continuous.watching import NoSpotterError, found_by
-from actum_model_trainer.continuous_cross_validation import found_without_each, models_without
-from actum_model_trainer.cross_validation import leave_one_person_out
-from actum_model_trainer.evaluation import evaluate
-from actum_model_trainer.report import report
 from actum_model_trainer.samples import LabelledStream, Samples, samples_from, select
 from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.side_by_side import at_most
@@ -35,11 +21,7 @@ from som_classifier.attention import ATTENTIONS, MOVING
 from som_classifier.model import Arrays, Model
 from som_classifier.model_loading import ModelError, kept_in, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
-from som_classifier.segmentation import Segmentation
-from som_classifier.settings import Settings
 
-CLASSIFIER = "som_classifier"
-"""The service that has the settings of the search."""
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of recordings")]
 PRESET_HELP = (
     f"kind of model to train: {PAPER.name} is the method of the paper that actum implements (Gharaee et al. 2017); "
@@ -59,7 +41,6 @@ BACKGROUND_HELP = (
     "supplied with actum; 'none': no examples; otherwise a recording (.mcap) or a folder of recordings. May be repeated"
 )
 SHIPPED, NONE = "shipped", "none"
-ONLY_LEFT_OUT = "used only with --leave-one-person-out: "
 PRESETS_SHOWN = f"<{'|'.join(PRESETS)}>"
 PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HELP)]
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
@@ -91,7 +72,7 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Train a model on labelled recordings, and write it to a file for 'actum up --model'."""
     began_s = time.monotonic()
-    _refuse_place(output, ".npz")
+    refuse_place(output, ".npz")
     chosen_preset = preset_named(preset, settings or ())
     known = None if add_to_model is None else _known(add_to_model, context)
     recordings = chosen(files, person, with_excluded)
@@ -114,13 +95,17 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
 
 def _known(path: Path, context: typer.Context) -> tuple[Model, Arrays]:
     """Return the model of `--add-to`, and what its file keeps; fail where a flag asks for something else."""
-    flags = {"preset": "--preset", "settings": "--set", "background": "--background"}
-    sources = {flag: context.get_parameter_source(name) for name, flag in flags.items()}
-    given = [flag for flag, source in sources.items() if source is not None and source.name != "DEFAULT"]
+    given = flags_given(context, {"preset": "--preset", "settings": "--set", "background": "--background"})
     if given:
         fail(f"--add-to keeps the model's preset, settings and background: leave out {' and '.join(given)}")
     with failing_on(ModelError):
         return load_model(path), kept_in(path)
+
+
+def flags_given(context: typer.Context, flags: Mapping[str, str]) -> list[str]:
+    """Return those flags, by the command's parameter, that somebody gave."""
+    sources = {flag: context.get_parameter_source(name) for name, flag in flags.items()}
+    return [flag for flag, source in sources.items() if source is not None and source.name != "DEFAULT"]
 
 
 def _read(recordings: Sequence[Recording]) -> Samples:
@@ -149,136 +134,6 @@ def _background(names: Sequence[str]) -> list[LabelledStream]:
     return [*(shipped() if SHIPPED in names else ()), *samples_from(files).streams]
 
 
-@with_flags_of(CLASSIFIER, names=SEARCH_SETTINGS)
-def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
-    given: Given,
-    files: Annotated[
-        list[Path],
-        typer.Argument(
-            help=(
-                "the model file to test (none with --leave-one-person-out), then labelled recordings or folders "
-                "of recordings"
-            )
-        ),
-    ],
-    person: PersonOption = None,
-    json_file: Annotated[
-        Path | None, typer.Option("--json", help="also write every prediction to this file (.json)")
-    ] = None,
-    by_person: Annotated[
-        bool,
-        typer.Option(
-            "--leave-one-person-out",
-            help=(
-                "test without a model file: for each person in turn, train a model on all other people and test it on "
-                "this person"
-            ),
-        ),
-    ] = False,
-    continuous: Annotated[
-        bool,
-        typer.Option(
-            "--continuous",
-            help=(
-                "test whether the model finds the actions by itself; default: the model is given the start and end of "
-                "each labelled action"
-            ),
-        ),
-    ] = False,
-    preset: Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=ONLY_LEFT_OUT + PRESET_HELP)] = DEFAULT.name,
-    settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=ONLY_LEFT_OUT + SET_HELP)
-    ] = None,
-    seed: Annotated[int, typer.Option(min=0, help=ONLY_LEFT_OUT + SEED_HELP)] = 0,
-    with_excluded: AllOption = False,
-    jobs: Annotated[int | None, typer.Option(min=1, help=ONLY_LEFT_OUT + JOBS_HELP)] = None,
-) -> None:
-    """Test how well actions are recognised in labelled recordings, and print the scores.
-
-    Name a model file to test that model, or use --leave-one-person-out to learn how well a model works with new people.
-    """
-    if json_file is not None:
-        _refuse_place(json_file, ".json")
-    if not by_person and len(files) == 1:
-        fail(
-            f"a model and at least one recording are needed, but only {files[0]} was given: give both, or use "
-            "--leave-one-person-out with recordings alone"
-        )
-    with failing_on(ModelError):
-        model = None if by_person else load_model(files[0])
-    if given and not continuous:
-        fail(f"{flag_of(next(iter(given)))} works only together with --continuous: add --continuous")
-    recordings = chosen(files if by_person else files[1:], person, with_excluded)
-    what = model, recordings, preset_named(preset, settings or ()), seed, json_file
-    with at_most(jobs):
-        if continuous:
-            _evaluate_continuously(*what, segmentation_of(given))
-        else:
-            _evaluate_segments(*what)
-
-
-def _evaluate_segments(
-    model: Model | None, recordings: Sequence[Recording], preset: Preset, seed: int, json_file: Path | None
-) -> None:
-    """Recognise labelled segments by a model, or without one each person's by all others, and print the scores."""
-    began_s = time.monotonic()
-    with failing_on(RecordingError, TrainingError), bars() as progress:
-        if model is None:
-            result = leave_one_person_out(recordings, preset, seed, progress)
-        else:
-            result = evaluate(model, recordings, progress)
-    tell_unread(recordings)
-    if result.n == 0:
-        fail(
-            "the given recordings contain no labelled action: record with 'actum record --label', or label the "
-            "recordings with 'actum label'"
-        )
-    console.print(report(result, time.monotonic() - began_s))
-    if json_file is not None:
-        write_text(json_file, json.dumps(result.as_json(), indent=1))
-
-
-def _evaluate_continuously(
-    model: Model | None,
-    recordings: Sequence[Recording],
-    preset: Preset,
-    seed: int,
-    json_file: Path | None,
-    segmentation: Segmentation,
-) -> None:
-    """Watch recordings with a model, or without one each person with one of all others, and print the scores."""
-    began_s = time.monotonic()
-    if model is not None and (problem := segmentation.misnamed(model)):
-        fail(problem)
-    if flags := flags_for(segmentation):
-        say(f"with {flags}")
-    with failing_on(RecordingError, TrainingError, NoSpotterError), bars() as progress:
-        if model is None:
-            models = models_without(recordings, preset, seed, progress)
-            found = found_without_each(recordings, models, progress, segmentation)
-        else:
-            found = found_by(model, recordings, progress, segmentation)
-    tell_unread(recordings)
-    if not found.seen:
-        fail("the given recordings contain no skeletons: give recordings of a person")
-    scores = scores_of(found)
-    console.print(continuous_report(scores, time.monotonic() - began_s))
-    if json_file is not None:
-        write_text(json_file, json.dumps(found.as_json() | {"scores": scores.as_json()}, indent=1))
-
-
-def segmentation_of(given: Given) -> Segmentation:
-    """Return the search settings of a classifier with these flags, and of the environment and `ACTUM_CONFIG`.
-
-    Fail where the settings cannot be used.
-    """
-    try:
-        settings = from_command_line(Settings, CLASSIFIER, arguments_of(CLASSIFIER, given))
-    except ValueError as error:
-        fail(complaint(error))
-    return replace(settings.segmentation, segments="auto")
-
-
 def preset_named(name: str, settings: Sequence[str]) -> Preset:
     """Return the preset of a name, changed by the settings, each NAME=VALUE; fail where there is no such preset."""
     if name not in PRESETS:
@@ -297,7 +152,7 @@ def preset_named(name: str, settings: Sequence[str]) -> Preset:
     return preset.changed(changes) if changes else preset
 
 
-def _refuse_place(file: Path, ending: str) -> None:
+def refuse_place(file: Path, ending: str) -> None:
     """Fail before long work where its result could not be written."""
     if not file.parent.is_dir():
         fail(f"{file} cannot be written: the folder {file.parent} does not exist")

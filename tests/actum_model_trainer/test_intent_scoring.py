@@ -1,15 +1,22 @@
 """How early contacts are foreseen is scored as the page says, on takes whose answer is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from benchmarks.intent import baselines
-from benchmarks.intent.learning import features_of
-from benchmarks.intent.scoring import Said, ahead, before, calibration_error, earliest, false_alarms_per_min
-from benchmarks.intent.takes import Contact, Take, simulated
 
-from action_fusion.intent.contact_network import shipped_network
 from action_fusion.intent.recent_paths import ARMS
 from actum.node import SECOND_NS
+from actum_model_trainer.foreseeing import baselines
+from actum_model_trainer.foreseeing.scoring import (
+    Said,
+    ahead,
+    before,
+    calibration_error,
+    earliest,
+    false_alarms_per_min,
+)
+from actum_model_trainer.foreseeing.takes import Contact, Take
 
 FRAMES, RATE_HZ = 301, 30
 STAMPS_NS = np.arange(FRAMES) * SECOND_NS // RATE_HZ
@@ -87,12 +94,6 @@ def test_never_announces_nothing() -> None:
     assert earliest([Said(reach(), baselines.never(reach()))]).recall == 0.0
 
 
-def test_the_network_that_comes_with_actum_foresees_contacts_of_people_it_has_not_seen() -> None:
-    network = shipped_network()
-    takes = simulated([201], 9)
-    told = []
-    for take in takes:
-        probability = np.array([network.foresee(each).probability.sum(axis=0) for each in features_of(take)])
-        told.append(Said(take, probability))
-    assert before(told, 0.5).right >= 0.8
-    assert ahead(told, 0.8).median_s >= 0.3
+def test_before_contacts_at_the_very_beginning_nothing_was_said() -> None:
+    at_once = replace(reach(), contacts=[Contact(round(0.2 * SECOND_NS), 0, 1, "lift")])
+    assert np.isnan(before([Said(at_once, np.zeros((FRAMES, 2)))], 0.5)).all()

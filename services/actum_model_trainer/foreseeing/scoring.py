@@ -2,13 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
-from benchmarks.intent.takes import Contact, Take
 
 from actum.arrays import Array
 from actum.node import SECOND_NS
+from actum_model_trainer.foreseeing.takes import Contact, Take
 
 HORIZON_S = 1.5
 """A contact counts as foreseen within so long (s)."""
@@ -32,7 +32,12 @@ BEFORE_S = (1.0, 0.5, 0.25)
 
 @dataclass(frozen=True)
 class Said:
-    """What was said in a take: at T stamps a score of each object (T, n), the time to its contact (T, n; s) if told."""
+    """What was said in a take.
+
+    Attributes:
+        scores: (T, n), of each object at each of the T stamps: the higher, the likelier it is touched.
+        contact_s: (T, n), the time until its contact (s); None where no times are said.
+    """
 
     take: Take
     scores: Array
@@ -40,11 +45,13 @@ class Said:
 
     @property
     def stamps_s(self) -> Array:
+        """The take's stamps (s)."""
         seconds: Array = self.take.stamps_ns / SECOND_NS
         return seconds
 
     @property
     def numbers(self) -> list[int]:
+        """The objects' numbers, in the order of the scores."""
         return sorted(self.take.objects_m)
 
     def announcements(self, threshold: float) -> Iterator["Announcement"]:
@@ -81,8 +88,13 @@ class Announcement(NamedTuple):
 
 
 class Ahead(NamedTuple):
-    """How early at a threshold: median time ahead (s) of all contacts, those not announced counting 0; the shares of
-    announcements that are right, and of contacts that are announced ahead."""
+    """How early contacts are announced at a threshold.
+
+    Attributes:
+        median_s: median time ahead (s) of all contacts; one that is not announced counts as 0.
+        precision: share of announcements that are right.
+        recall: share of contacts that are announced ahead.
+    """
 
     threshold: float
     median_s: float
@@ -114,8 +126,13 @@ def earliest(said: Sequence[Said]) -> Ahead:
 
 
 class Before(NamedTuple):
-    """So long before the contacts: the share of which the likeliest object is the right one, the Brier score over the
-    objects and none, and the median error of the time to contact (s); NaN where no time is told."""
+    """What was said so long before the contacts; NaN where nothing was.
+
+    Attributes:
+        right: share of contacts whose likeliest object is the right one.
+        brier: mean Brier score over the objects and none of them.
+        time_error_s: median error of the time to contact (s); NaN where no times are said.
+    """
 
     right: float
     brier: float
@@ -138,7 +155,31 @@ def before(said: Sequence[Said], seconds: float) -> Before:
             if each.contact_s is not None:
                 left_s = contact.stamp_ns / SECOND_NS - each.stamps_s[row]
                 errors_s.append(abs(float(each.contact_s[row][truth][0]) - left_s))
+    if not right:
+        return Before(np.nan, np.nan, np.nan)
     return Before(float(np.mean(right)), float(np.mean(brier)), float(np.median(errors_s)) if errors_s else np.nan)
+
+
+class Scores(NamedTuple):
+    """How early contacts are announced at `PRECISION`, and what is said at each of `BEFORE_S`."""
+
+    ahead: Ahead
+    before: tuple[Before, ...]
+
+    @classmethod
+    def of(cls, said: Sequence[Said]) -> Self:
+        """Score what was said in takes."""
+        return cls(earliest(said), tuple(before(said, seconds) for seconds in BEFORE_S))
+
+    @property
+    def at_half(self) -> Before:
+        """What is said half a second before."""
+        return self.before[BEFORE_S.index(0.5)]
+
+    @property
+    def is_probable(self) -> bool:
+        """Whether the scores are probabilities, to which times are said: only then is a Brier score of use."""
+        return not np.isnan(self.at_half.time_error_s)
 
 
 def calibration_error(said: Sequence[Said]) -> float:

@@ -3,10 +3,12 @@
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from benchmarks.intent.takes import Take
+from numpy.typing import NDArray
 
 from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
+from actum_model_trainer.foreseeing.scoring import HORIZON_S, Said, Scores
+from actum_model_trainer.foreseeing.takes import Take
 
 Method = Callable[[Take], Array]
 """Scores each object at every instant of a take, (T, n): the higher, the likelier it is touched."""
@@ -22,8 +24,26 @@ POINTS = 5
 """Points of such a path."""
 MOST_PATHS = 4000
 """Paths of training that are kept."""
-HORIZON_S = 1.5
-"""Paths of training that lead to a contact within so long (s)."""
+
+
+def simpler(training: Sequence[Take] = ()) -> dict[str, Method]:
+    """Return the baselines by name; with the nearest path of training only where there are takes to train on."""
+    trained = {"nearest training path": of_nearest_path(training)} if training else {}
+    return {
+        "nearest object": nearest,
+        "constant velocity": constant_velocity,
+        "minimum jerk": minimum_jerk,
+        **trained,
+        "never": never,
+    }
+
+
+def compared(ours: Sequence[Said], training: Sequence[Take] = ()) -> dict[str, Scores]:
+    """Return the scores of actum and of the baselines on the same takes, by name."""
+    scores = {"actum": Scores.of(ours)}
+    for name, method in simpler(training).items():
+        scores[name] = Scores.of([Said(each.take, method(each.take)) for each in ours])
+    return scores
 
 
 def nearest(take: Take) -> Array:
@@ -103,7 +123,8 @@ def _best_hand(take: Take, end_of: Callable[[Array, Take], Array]) -> Array:
     """Return minus the distance of each object from where either hand will be; minus infinity where that is unknown."""
     objects_m = _objects(take)
     scores = [-np.linalg.norm(objects_m - end_of(hand_m, take)[:, None], axis=2) for hand_m in _hands(take)]
-    return np.nan_to_num(np.fmax(*scores), nan=-np.inf)
+    best: Array = np.nan_to_num(np.fmax(*scores), nan=-np.inf)
+    return best
 
 
 def _hands(take: Take) -> Array:
@@ -127,7 +148,7 @@ def _paths(hand_m: Array, take: Take) -> Array:
     return np.concatenate([hand_m[_rows_before(take, float(s))] - hand_m for s in instants_s], axis=1)
 
 
-def _rows_before(take: Take, seconds: float) -> np.ndarray:
+def _rows_before(take: Take, seconds: float) -> NDArray[np.intp]:
     """Return the row so long before each row (s), the first where there is none."""
     rows = np.searchsorted(take.stamps_ns, take.stamps_ns - round(seconds * SECOND_NS), side="right") - 1
     return rows.clip(0)

@@ -1,0 +1,1 @@
+"""How early and how rightly contacts of hands with objects are foreseen, and what is simpler."""
