@@ -89,8 +89,7 @@ def _right(said: Sequence[tuple[list[Contact], list[Intent]]], seconds: float) -
         for contact in contacts:
             at_ns = contact.stamp_ns - round(seconds * SECOND_NS)
             last = [intent for intent in intents if intent.stamp_ns <= at_ns][-1:]
-            named = (each for intent in last for each in intent.intended if each.action is not None)
-            first = next(named, None)
+            first = next((each for intent in last for each in intent.intended[:1]), None)
             right.append(first is not None and (first.object_id, first.action) == (contact.number, contact.action))
     return float(np.mean(right))
 
@@ -99,13 +98,13 @@ def _calibration_error(said: Sequence[tuple[list[Contact], list[Intent]]]) -> fl
     told, came = [], []
     for contacts, intents in said:
         for intent in intents:
-            for each in (one for one in intent.intended if one.action is not None and one.probability > LEAST):
+            for each in (one for one in intent.intended if (one.action_probability or 0.0) > LEAST):
                 left_s = [
                     (contact.stamp_ns - intent.stamp_ns) / SECOND_NS
                     for contact in contacts
                     if (contact.number, contact.action) == (each.object_id, each.action)
                 ]
-                told.append(each.probability)
+                told.append(each.action_probability or 0.0)
                 came.append(any(0 < left <= HORIZON_S for left in left_s))
     probability, right = np.array(told), np.array(came)
     in_bin = [np.minimum((probability * BINS).astype(int), BINS - 1) == k for k in range(BINS)]

@@ -50,10 +50,17 @@ def test_an_announcement_of_another_object_is_wrong_and_foresees_nothing() -> No
 
 
 def test_what_was_announced_longer_ago_than_the_horizon_is_a_false_alarm() -> None:
-    early = [said(1, 1.0, 4.4)]
+    early = [said(1, 4.0, 4.4)]
     assert ahead(early, 0.5).precision == 0.0
     assert false_alarms_per_min(early) == pytest.approx(60 / 10)
-    assert false_alarms_per_min([said(1, 1.0, 4.6)]) == 0.0
+    assert false_alarms_per_min([said(1, 4.6, 5.0)]) == 0.0
+
+
+def test_what_is_announced_for_longer_than_the_horizon_is_announced_anew() -> None:
+    """From 1.0, 2.5 and 4.0 s on in vain, and from 5.6 s on rightly."""
+    result = ahead([said(1, 1.0, 6.0)], 0.5)
+    assert result.precision == pytest.approx(1 / 4)
+    assert result.median_s == pytest.approx(0.4, abs=0.1)
 
 
 def test_the_earliest_threshold_leaves_out_what_is_said_too_often_in_vain() -> None:

@@ -4,6 +4,7 @@ import numpy as np
 
 from action_fusion.intent.approach import FEATURES, approach
 from action_fusion.intent.contact_network import ContactNetwork
+from action_fusion.intent.intents import touched_next
 from action_fusion.intent.recent_paths import RecentArms, RecentObjects
 from actum.arrays import Array
 from actum_model_trainer.foreseeing.scoring import HORIZON_S, Said
@@ -11,12 +12,11 @@ from actum_model_trainer.foreseeing.takes import Take
 
 
 def said_by(network: ContactNetwork, take: Take) -> Said:
-    """Return what a network says at each frame: each object's probability that either hand touches it."""
+    """Return what a network says at each frame: each object's probability that it is touched next."""
     scores, times_s = [], []
     for features in features_of(take):
         foreseen = network.foresee(features)
-        together = foreseen.probability.sum(axis=0)
-        scores.append(together / max(together.sum(), 1.0))
+        scores.append(touched_next(foreseen.probability))
         nearer = foreseen.probability.argmax(axis=0)
         times_s.append(np.minimum(foreseen.contact_s[nearer, np.arange(len(nearer))], HORIZON_S))
     return Said(take, np.array(scores), np.array(times_s))
