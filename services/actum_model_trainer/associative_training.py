@@ -45,15 +45,7 @@ def with_continuation(
     instants, no_shares = instants_of(streams), np.zeros((2, len(STEPS)), np.float32)
     untrained = AssociativeSom.untrained(len(model.layer1.weights))
     continuation = MapContinuation(model.layer1, contrast, posture, untrained, no_shares)
-    drawn = np.random.default_rng(seed).integers(len(instants.postures), size=PRESENTATIONS)
-    learning = AssociationLearning(len(model.layer1.weights))
-    for first in range(0, PRESENTATIONS, AT_ONCE):
-        progress("association", first, PRESENTATIONS)
-        shown = drawn[first : first + AT_ONCE]
-        rates = falling(*RATES, PRESENTATIONS)[first : first + AT_ONCE]
-        _show(learning, continuation, instants.at(shown), rates)
-    progress("association", PRESENTATIONS, PRESENTATIONS)
-    trained = replace(continuation, association=learning.learnt)
+    trained = replace(continuation, association=_learnt(continuation, instants, seed, progress))
     judged = instants.at(np.linspace(0, len(instants.postures) - 1, JUDGED).astype(np.intp))
     return replace(model, continuation=replace(trained, shares=fitted_shares(judged, _displacements(trained, judged))))
 
@@ -80,20 +72,31 @@ class AssociationLearning:
         inputs = np.concatenate([now, before])
         active = np.flatnonzero(inputs > ACTIVE * inputs.max())
         x = inputs[active].astype(np.float32)
-        if not len(x):
-            return
         learnt = self._weights[active]
         error = after - now - x @ learnt
         learnt += np.multiply.outer(np.float32(rate) / (x @ x) * x, error)
         self._weights[active] = learnt
 
 
+def _learnt(continuation: MapContinuation, instants: Instants, seed: int, progress: Progress) -> AssociativeSom:
+    """Return the associations after `PRESENTATIONS` instants, drawn at random."""
+    learning, rates = AssociationLearning(len(continuation.som.weights)), falling(*RATES, PRESENTATIONS)
+    drawn = np.random.default_rng(seed).integers(len(instants.postures), size=PRESENTATIONS)
+    for first in range(0, PRESENTATIONS, AT_ONCE):
+        progress("association", first, PRESENTATIONS)
+        shown = slice(first, first + AT_ONCE)
+        _show(learning, continuation, instants.at(drawn[shown]), rates[shown])
+    progress("association", PRESENTATIONS, PRESENTATIONS)
+    return learning.learnt
+
+
 def _show(learning: AssociationLearning, continuation: MapContinuation, shown: Instants, rates: Array) -> None:
     """Show instants, one after the other, each with every part of the body."""
     now, before, after = map(continuation.activities, (shown.postures, shown.before, shown.after))
     for number, rate in enumerate(rates.tolist()):
-        for part in range(len(now)):
-            learning.adapt(now[part, number], before[part, number], after[part, number], rate)
+        for followed in zip(now[:, number], before[:, number], after[:, number], strict=True):
+            if all(activity.any() for activity in followed):  # else the part was missing
+                learning.adapt(*followed, rate)
 
 
 def _displacements(continuation: MapContinuation, instants: Instants) -> Array:

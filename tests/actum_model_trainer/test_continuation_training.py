@@ -8,11 +8,12 @@ import pytest
 from actum.node import SECOND_NS
 from actum_model_trainer.continuation_data import MOST_INSTANTS, fitted_shares, instants_of
 from actum_model_trainer.samples import LabelledStream
-from actum_model_trainer.training import TrainingError, train, update, with_continuation
+from actum_model_trainer.training import CONTINUATIONS, TrainingError, add_to, train, update, with_continuation
 from continued import KINDS, continuation_of, continued, standing_stream, without_continuation
 from people import STANDING
 from performers import TINY, TINY_PAPER
 from som_classifier.continuation import HORIZONS_S
+from som_classifier.presets import PRESETS
 from unmarked import taught
 
 POSTURE = STANDING - STANDING[2]
@@ -97,3 +98,18 @@ def test_an_updated_model_continues_as_before() -> None:
     model = continued("pyramid")
     updated = update(model, taught().usable, taught().streams, TINY, seed=1)
     assert continuation_of(updated) is continuation_of(model)
+
+
+def test_a_model_to_which_an_action_is_added_continues_as_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(PRESETS, TINY.name, TINY)
+    model = continued("pyramid")
+    examples = [replace(sample, label="wave") for sample in taught().usable[:3]]
+    added = add_to(model, model.kept, examples, taught().streams)
+    assert "wave" in added.labels
+    assert continuation_of(added) is continuation_of(model)
+
+
+def test_a_kind_of_model_that_cannot_continue_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(CONTINUATIONS, "pyramid")
+    with pytest.raises(TrainingError, match="models of kind 'pyramid' cannot predict how a posture goes on"):
+        with_continuation(without_continuation("pyramid"), taught().streams)
