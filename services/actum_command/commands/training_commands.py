@@ -107,10 +107,9 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
             if known is None:
                 beside = _background(background or [SHIPPED])
                 model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress, beside)
+                model = with_continuation(model, samples.streams, seed, progress) if continued else model
             else:
                 model = add_to(*known, samples.usable, samples.streams, seed, progress)
-            if continued:
-                model = with_continuation(model, samples.streams, seed, progress)
         model.save(output)
     say(
         f"model {model.id}: {model.metadata.samples} samples of {len(model.labels)} actions, preset "
@@ -122,11 +121,12 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
 
 def _known(path: Path, context: typer.Context) -> tuple[Model, Arrays]:
     """Return the model of `--add-to`, and what its file keeps; fail where a flag asks for something else."""
-    flags = {"preset": "--preset", "settings": "--set", "background": "--background"}
+    flags = {"preset": "--preset", "settings": "--set", "background": "--background", "continued": "--continue"}
     sources = {flag: context.get_parameter_source(name) for name, flag in flags.items()}
     given = [flag for flag, source in sources.items() if source is not None and source.name != "DEFAULT"]
     if given:
-        fail(f"--add-to keeps the model's preset, settings and background: leave out {' and '.join(given)}")
+        kept = "preset, settings, background and continuation"
+        fail(f"--add-to keeps the model's {kept}: leave out {' and '.join(given)}")
     with failing_on(ModelError):
         return load_model(path), kept_in(path)
 
