@@ -11,7 +11,7 @@ PYTHONS ?= python3.11 python3.12 python3.13
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench check-speed bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-growth bench-intent bench-many bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench check-speed bench-camera bench-camera-continuous bench-camera-latency bench-continuation bench-continuous bench-growth bench-intent bench-many bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -117,6 +117,10 @@ bench-camera-latency: $(STAMP)  ## from a picture's capture to the event, beside
 	@test -f "$$ACTUM_POSE_MODEL" || { echo "bench-camera-latency needs ACTUM_POSE_MODEL: the file that actum models fetch gets" >&2; exit 1; }
 	@test -d "$$ACTUM_DATA" || { echo "bench-camera-latency needs ACTUM_DATA: the folder that holds florence3d_rgb/" >&2; exit 1; }
 	$(BIN)/python -m benchmarks.camera_latency
+
+bench-continuation: $(STAMP)  ## how postures go on for a second, beside staying and going on at the same speed; about ten minutes
+	@test -d "$$ACTUM_DATA" || { echo "bench-continuation needs ACTUM_DATA: the folder that holds msr_action3d/, utkinect/ and msrc12/" >&2; exit 1; }
+	$(BIN)/python -m benchmarks.continuation
 
 bench-continuous: $(STAMP)  ## finding actions that nobody marked, beside peers given the same frames
 	@test -d "$$ACTUM_DATA" || { echo "bench-continuous needs ACTUM_DATA: the folder that holds utkinect/ and msrc12/" >&2; exit 1; }

@@ -33,6 +33,7 @@ RESULTS = {
     "Recognition: what was tried on MSR": "benchmarks/recognition/msr",
     "Without marks": "benchmarks/continuous/results",
     "Without marks: what was tried": "benchmarks/continuous/README",
+    "How postures go on": "benchmarks/continuation/results",
     "Objects": "benchmarks/objects/results",
     "Hands and objects": "benchmarks/bimacs",
     "Contacts foreseen": "benchmarks/intent/results",

@@ -48,8 +48,8 @@ WATCHED, WATCHED_MIN = range(131, 141), 3.0
 """Those who do everyday things, and for how long each (minutes)."""
 FOLDS = 5
 """Parts of the motion capture, of which each is left out of the learning in turn."""
-FOLD_PERSONS = range(1, 9)
-"""Simulated people learnt from beside motion capture: fewer, since it is learnt once for each part."""
+FOLD_PERSONS, FOLD_STEPS = range(1, 9), 2000
+"""Simulated people learnt from beside motion capture, and steps of learning: fewer, since it is learnt five times."""
 HEAD = (
     "| | time ahead, median (s) | precision | announced ahead | right "
     + " | right ".join(f"{s} s before" for s in BEFORE_S)
@@ -97,7 +97,7 @@ def of_captured(folder: Path | None) -> Iterator[str]:
     of_takes = [Examples.of([take], CAPTURED_WEIGHT) for take in takes]
     for fold in range(FOLDS):
         rest = [each for number, each in enumerate(of_takes) if number % FOLDS != fold]
-        network = learnt(Examples.joined([*others, *rest]))
+        network = learnt(Examples.joined([*others, *rest]), steps=FOLD_STEPS)
         said += [said_by(network, take) for take in takes[fold::FOLDS]]
     yield (
         f"{len(takes)} takes of one person, hands and three objects; each fifth is left out of the learning in turn. "

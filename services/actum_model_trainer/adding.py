@@ -71,7 +71,8 @@ def add(
     data = _joined(before, _Measured.of(model, before.measures, samples, as_known, rng))
     origin = _origin(known, data) | {"data_digest": digest, "updated_from": model.id}
     above = fitted_model(model.first, data, origin, as_known, rng, progress)
-    added = replace(with_what_was_left_out(above, model, before, as_known), kept=kept_arrays(data))
+    added = with_what_was_left_out(above, model, before, as_known)
+    added = replace(added, kept=kept_arrays(data), continuation=model.continuation)
     if windows is None:
         return added
     moved = windows.moved(pooled_basis(kept), pooled_basis(added.kept))

@@ -67,7 +67,8 @@ def update(
     taught = Taught.of(samples, known.mirrors, as_known, seed)
     above = train_above(model.first, taught, background, as_known, seed, progress)
     metadata = above.metadata.model_copy(update={"spotting": known.spotting, "updated_from": model.id})
-    return replace(above, heads=model.heads, metadata=metadata, kept={**above.kept, **_moved(model, kept, above)})
+    kept_too = {**above.kept, **_moved(model, kept, above)}
+    return replace(above, heads=model.heads, metadata=metadata, kept=kept_too, continuation=model.continuation)
 
 
 def _moved(model: PyramidModel, kept: Arrays, above: PyramidModel) -> Arrays:

@@ -8,7 +8,7 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from actum.messages import NONE
-from actum_model_trainer import adding, paper_training, pyramid_training
+from actum_model_trainer import adding, associative_training, continuation_regression, paper_training, pyramid_training
 from actum_model_trainer.background import counterexamples, shipped
 from actum_model_trainer.kept import learnt_beside
 from actum_model_trainer.progress import Progress, silent
@@ -20,6 +20,7 @@ from som_classifier.presets import PRESETS, Preset
 
 __all__ = [
     "ADDITIONS",
+    "CONTINUATIONS",
     "SEARCHES",
     "TRAININGS",
     "UPDATES",
@@ -28,6 +29,7 @@ __all__ = [
     "train",
     "train_to_spot",
     "update",
+    "with_continuation",
 ]
 
 
@@ -46,6 +48,11 @@ ADDITIONS: dict[
     str, Callable[[Any, Arrays, Sequence[SegmentSample], Sequence[LabelledStream], str, Any, int, Progress], Model]
 ] = {"pyramid": adding.add}
 """For each kind of model that examples can be added to: adds them, whatever was kept of the training."""
+CONTINUATIONS: dict[str, Callable[[Any, Sequence[LabelledStream], int, Progress], Model]] = {
+    "paper": associative_training.with_continuation,
+    "pyramid": continuation_regression.with_continuation,
+}
+"""For each kind of model that can predict how a posture goes on: trains that on streams, with a seed."""
 
 
 def train(
@@ -87,6 +94,24 @@ def train_to_spot(
         return model
     with threadpool_limits(1, user_api="blas"):
         return search(model, streams, preset, seed, progress)
+
+
+def with_continuation(
+    model: Model, streams: Sequence[LabelledStream], seed: int = 0, progress: Progress = silent
+) -> Model:
+    """Return the model with a continuation that is trained on streams; all else stays as it is.
+
+    Raises:
+        TrainingError: the model's kind has no continuation, or no stream is long enough.
+    """
+    continuing = CONTINUATIONS.get(model.metadata.kind)
+    if continuing is None:
+        raise TrainingError(
+            f"models of kind {model.metadata.kind!r} cannot predict how a posture goes on: train a model of preset "
+            f"{' or '.join(PRESETS)}"
+        )
+    with threadpool_limits(1, user_api="blas"):
+        return continuing(model, streams, seed, progress)
 
 
 def update(

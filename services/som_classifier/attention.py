@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Mask
+from actum.arrays import Array, Floats, Mask
 from actum.skeletons import INDEX, JOINTS, PARTS
 from actum.standard_body import BONES
 
@@ -73,6 +73,14 @@ class PostureInput:
         points = joints if self.axes == "posture" else upright
         relative: Array = points - (_hips(points) if self.origin == "hips" else points[_TORSO])
         return relative.reshape(1, -1) if self.attention == ALL else relative[_PART_JOINTS].reshape(len(PARTS), -1)
+
+    def joints(self, rows: Floats) -> Array:
+        """Return the joints (n, 15, 3) that input vectors (choices, n, size) of the same n frames consist of."""
+        frames = rows.shape[1]
+        joints = np.empty((frames, len(JOINTS), 3))
+        chosen = slice(None) if self.attention == ALL else _PART_JOINTS
+        joints[:, chosen] = rows.swapaxes(0, 1).reshape(joints[:, chosen].shape)
+        return joints
 
     def attended(self, motion: Array, present: Mask) -> tuple[int, int]:
         """Return the index of the part that is attended to over a segment, and that of its row among `rows`.

@@ -35,6 +35,7 @@ class Frame:
         depth_inferred: whether distances were inferred from an image and a standard body's size.
         activity: the encoder's result for this frame, of a type that the model defines.
         reason: why the preprocessor could not use the frame; None where it could.
+        upright: (15, 3), scaled joints in the upright frame as measured, before `kinematics` smooths them.
     """
 
     stamp_ns: int
@@ -49,6 +50,7 @@ class Frame:
     depth_inferred: bool = False
     activity: Any = None
     reason: str | None = None
+    upright: Array | None = None
 
     @property
     def valid(self) -> bool:
@@ -107,6 +109,7 @@ def frame_of(posture: Posture, lost: int, smoothing: KinematicsFilter) -> Frame:
         missing,
         posture.depth_std_m is not None,
         reason=posture.reason,
+        upright=upright,
     )
 
 

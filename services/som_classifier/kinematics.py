@@ -127,6 +127,24 @@ def _lagged(lagging: Array, start: Array, step: Array, elapsed_s: float) -> Arra
     return lagged
 
 
+REMOVED_SHARE = 0.75
+"""The share of speed times time constant by which joints lead on average: noise of resting joints counts as speed."""
+
+
+def as_measured(posture: Array, velocity: Array) -> Array:
+    """Return about the joints (…, 15, 3) before the low-pass, which a moving joint leads by speed times time constant.
+
+    Args:
+        posture: (…, 15, 3), of `Kinematics`.
+        velocity: (…, 15, 3), of `Kinematics`.
+    """
+    velocity_mps = velocity / LAG_TIME_CONSTANT_S
+    speed_mps = np.sqrt(np.square(velocity_mps).sum(axis=-1, keepdims=True))
+    delay_s = STILL_TIME_CONSTANT_S / (1 + speed_mps / STILL_SPEED_MPS)
+    measured: Array = posture + REMOVED_SHARE * delay_s * velocity_mps
+    return measured
+
+
 AVERAGED_NS = SECOND_NS // 4
 """Postures are averaged over this long (ns): longer than a jump of a joint, shorter than any action."""
 

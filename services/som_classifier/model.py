@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from actum.atomic_file import replaced
 from actum.messages import MOST_ACTIONS, Name
 from actum.skeletons import JOINTS
+from som_classifier.continuation import Continuation
 from som_classifier.frames import Frame
 from som_classifier.spotting.spotted import Spotter, SpottingMetadata, SpottingOptions
 
@@ -112,11 +113,13 @@ class Model(ABC):
         metadata: what the file holds beside the weights.
         kept: what the file keeps of the training, so that actions can be added; no part of the model's id. A model
             that was loaded to classify has none.
+        continuation: how a posture goes on; None where the model was not trained for that.
         min_frames: the fewest valid frames for which it gives an answer.
     """
 
     metadata: ModelMetadata
     kept: Arrays = NOTHING_KEPT
+    continuation: Continuation | None = None
     min_frames: ClassVar[int] = 3
 
     @property

@@ -14,6 +14,7 @@ from actum.som import Som
 from som_classifier.attention import PART_NAMES, Axes, Origin, PostureInput
 from som_classifier.frames import Frame
 from som_classifier.map_activity import NO_WINNER, MapActivity, map_activity, ordered_vector, soft_activity, trajectory
+from som_classifier.map_continuation import MapContinuation
 from som_classifier.model import Arrays, Encoder, Model, ModelMetadata, Recognition
 from som_classifier.supervised import SupervisedLayer
 
@@ -58,12 +59,14 @@ class PaperModel(Model):
         layer2: the map of ordered vectors.
         layer3: one neuron per label on the second map's activity.
         metadata: what is stored beside the weights.
+        continuation: how a posture goes on; None where the model was not trained for that.
     """
 
     layer1: Som
     layer2: Som
     layer3: SupervisedLayer
     metadata: PaperMetadata
+    continuation: MapContinuation | None = None
 
     def __post_init__(self) -> None:
         if problem := self._mismatch():
@@ -72,7 +75,8 @@ class PaperModel(Model):
     @property
     def arrays(self) -> Arrays:
         """All weights by the names they are stored under, maps as component planes (rows, cols, dim)."""
-        return {"layer1": self.layer1.planes, "layer2": self.layer2.planes, "layer3": self.layer3.weights}
+        weights = {"layer1": self.layer1.planes, "layer2": self.layer2.planes, "layer3": self.layer3.weights}
+        return weights if self.continuation is None else {**weights, **self.continuation.arrays}
 
     @classmethod
     def restored(cls, metadata: str, arrays: Arrays) -> "PaperModel":
@@ -83,7 +87,8 @@ class PaperModel(Model):
         """
         stored = PaperMetadata.model_validate_json(metadata)
         layer1, layer2 = Som.of_planes(arrays["layer1"]), Som.of_planes(arrays["layer2"])
-        return cls(layer1, layer2, SupervisedLayer(arrays["layer3"]), stored)
+        continuation = MapContinuation.restored(layer1, stored.centre_contrast, stored.posture, arrays)
+        return cls(layer1, layer2, SupervisedLayer(arrays["layer3"]), stored, continuation)
 
     def encoder(self) -> Encoder:
         """Return a new encoder, for one agent."""

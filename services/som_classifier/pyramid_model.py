@@ -32,6 +32,7 @@ from som_classifier.map_activity import soft_activity, without_repeats
 from som_classifier.model import Arrays, Model, Recognition
 from som_classifier.pyramid import PrefixSums, Pyramid
 from som_classifier.pyramid_metadata import PyramidMetadata
+from som_classifier.regressed_continuation import INPUTS, RegressedContinuation
 from som_classifier.second_layer import ActionMap
 from som_classifier.spotting.pyramid_spotter import PoolingOnce, PyramidSpotter
 from som_classifier.spotting.spotted import Spotter, SpottingOptions
@@ -58,6 +59,7 @@ class PyramidModel(Model):
         layer3: one neuron per action on the second layer's activity.
         heads: of the search for actions without marks; None where the model was not trained for that.
         kept: what the layers above the maps were trained on, for training alone.
+        continuation: how a posture goes on; None where the model was not trained for that.
     """
 
     first: FirstMaps
@@ -70,6 +72,7 @@ class PyramidModel(Model):
     metadata: PyramidMetadata
     heads: CompletenessHeads | None = None
     kept: Arrays = field(default_factory=dict)
+    continuation: RegressedContinuation | None = None
 
     def __post_init__(self) -> None:
         if problem := self.metadata.problem() or self._number_problem() or self._shape_problem():
@@ -95,7 +98,7 @@ class PyramidModel(Model):
         }
         if self.heads is not None:
             weights |= {"completeness_axes": self.heads.axes, "completeness_offsets": self.heads.offsets}
-        return weights
+        return weights if self.continuation is None else {**weights, **self.continuation.arrays}
 
     @classmethod
     def restored(cls, metadata: str, arrays: Arrays) -> "PyramidModel":
@@ -124,6 +127,7 @@ class PyramidModel(Model):
             SupervisedLayer(arrays["layer3"]),
             stored,
             heads,
+            continuation=RegressedContinuation.restored(arrays),
         )
 
     @cached_property
@@ -288,6 +292,8 @@ class PyramidModel(Model):
         if self.heads is not None:
             shapes["completeness heads"] = (self.heads.axes.shape, (self.pyramid.cells * first.units, actions))
             shapes["offsets of these"] = (self.heads.offsets.shape, (actions,))
+        if self.continuation is not None:
+            shapes["axes of the continuation"] = (self.continuation.axes.shape[:1], (INPUTS + first.units,))
         wrong = (
             f"its {name} is of shape {has}, not {should}" for name, (has, should) in shapes.items() if has != should
         )

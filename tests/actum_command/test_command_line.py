@@ -196,6 +196,17 @@ def test_training_holds_the_examples_against_the_background_that_is_named(
     assert str(nothing) in refused("train", examples, "-o", tmp_path / "m.npz", "--background", nothing)
 
 
+def test_a_model_predicts_how_postures_go_on_only_where_that_is_asked_for(
+    examples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(SEARCHES, "pyramid")
+    for name, flags in (("without", ()), ("with", ("--continue",))):
+        done = invoke("train", examples, "-o", tmp_path / f"{name}.npz", *flags)
+        assert done.exit_code == 0, done.output
+    assert load_model(tmp_path / "without.npz").continuation is None
+    assert load_model(tmp_path / "with.npz").continuation is not None
+
+
 def test_examples_are_added_to_a_model_file(examples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(SEARCHES, "pyramid")
     before, after = tmp_path / "before.npz", tmp_path / "after.npz"
@@ -212,6 +223,7 @@ def test_examples_are_added_to_a_model_file(examples: Path, tmp_path: Path, monk
     ("flags", "named"),
     [
         (("--background", "none"), "--background"),
+        (("--continue",), "--continue"),
         (("--preset", DEFAULT.name), "--preset"),
         (("--preset", "paper", "--set", "axes=posture"), "--preset and --set"),
     ],
@@ -222,7 +234,7 @@ def test_what_an_addition_keeps_is_refused_as_a_flag_before_anything_is_read(
     (tmp_path / "broken.mcap").write_bytes(b"no recording")
     files = tmp_path / "broken.mcap", "-o", tmp_path / "after.npz", "--add-to", tmp_path / "no.npz"
     said = " ".join(refused("train", *files, *flags).split())
-    assert said.endswith(f"--add-to keeps the model's preset, settings and background: leave out {named}")
+    assert said.endswith(f"--add-to keeps the model's preset, settings, background and continuation: leave out {named}")
 
 
 def test_the_model_to_add_to_is_loaded_before_recordings(tmp_path: Path) -> None:

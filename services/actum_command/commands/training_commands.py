@@ -16,7 +16,7 @@ from actum_model_trainer.background import shipped
 from actum_model_trainer.samples import LabelledStream, Samples, samples_from, select
 from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.side_by_side import at_most
-from actum_model_trainer.training import TrainingError, add_to, train_to_spot
+from actum_model_trainer.training import TrainingError, add_to, train_to_spot, with_continuation
 from som_classifier.attention import ATTENTIONS, MOVING
 from som_classifier.model import Arrays, Model
 from som_classifier.model_loading import ModelError, kept_in, load_model
@@ -54,6 +54,11 @@ ADD_TO_HELP = (
     "show new actions or known ones. Takes about a second"
 )
 
+CONTINUE_HELP = (
+    "also train the prediction of how a person's posture goes on in the next second. Takes some seconds, and makes the "
+    "model file larger"
+)
+
 
 def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     context: typer.Context,
@@ -69,6 +74,7 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     ] = None,
     add_to_model: Annotated[Path | None, typer.Option("--add-to", metavar="MODEL", help=ADD_TO_HELP)] = None,
     jobs: Annotated[int | None, typer.Option(min=1, help=JOBS_HELP)] = None,
+    continued: Annotated[bool, typer.Option("--continue", help=CONTINUE_HELP)] = False,
 ) -> None:
     """Train a model on labelled recordings, and write it to a file for 'actum up --model'."""
     began_s = time.monotonic()
@@ -82,6 +88,7 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
             if known is None:
                 beside = _background(background or [SHIPPED])
                 model = train_to_spot(samples.usable, samples.streams, chosen_preset, seed, progress, beside)
+                model = with_continuation(model, samples.streams, seed, progress) if continued else model
             else:
                 model = add_to(*known, samples.usable, samples.streams, seed, progress)
         model.save(output)
@@ -95,9 +102,11 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
 
 def _known(path: Path, context: typer.Context) -> tuple[Model, Arrays]:
     """Return the model of `--add-to`, and what its file keeps; fail where a flag asks for something else."""
-    given = flags_given(context, {"preset": "--preset", "settings": "--set", "background": "--background"})
+    flags = {"preset": "--preset", "settings": "--set", "background": "--background", "continued": "--continue"}
+    given = flags_given(context, flags)
     if given:
-        fail(f"--add-to keeps the model's preset, settings and background: leave out {' and '.join(given)}")
+        kept = "preset, settings, background and continuation"
+        fail(f"--add-to keeps the model's {kept}: leave out {' and '.join(given)}")
     with failing_on(ModelError):
         return load_model(path), kept_in(path)
 

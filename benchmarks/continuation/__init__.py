@@ -1,0 +1,1 @@
+"""How people's postures go on, predicted up to a second ahead."""
