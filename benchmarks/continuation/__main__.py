@@ -34,7 +34,8 @@ the simulated scene on people 0 to 8, and on people 20 to 28, who do more kinds 
 activity, learning rates and presentations were compared on the training people alone, two thirds of them against one
 third; in a range of a factor of ten they hardly matter. The form of both methods was found earlier in folds over all
 people: displacements instead of postures are read off the map, the step is 0.25 s, and the activity one step before
-is a second input. Penalty and weight of activity were first looked at there, too. For these choices the tested people are not unseen."""
+is a second input. Penalty and weight of activity were first looked at there, too. For these choices the tested people
+are not unseen."""
 
 
 def section(bench: Bench, part: str) -> str:
