@@ -15,7 +15,7 @@ from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream, Samples, samples_from
 from actum_model_trainer.spotting.common_head import mixed_heads, with_common
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
-from actum_model_trainer.spotting.heads_training import fit_heads
+from actum_model_trainer.spotting.heads_training import FoldedHeads, fitted_to, folded
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.spotting.scanning import ScannedStream
 from actum_model_trainer.spotting.spotting_training import _chosen
@@ -87,13 +87,13 @@ def test_the_vector_of_any_window_is_that_of_the_live_model(
     """But for single quantisation steps: activities of many frames at once round otherwise than those of one."""
     stream, frames = both
     model, rng = spotting_model(), np.random.default_rng(0)
-    encoded = EncodedStream(model, stream)
-    for first, length in zip(rng.integers(0, len(frames) - 5, 50), rng.integers(4, 60, 50), strict=True):
-        window = frames[first : first + length]
-        mean_activities = [
-            v.astype(np.float64) ** 4
-            for v in (encoded.vector(first, first + len(window) - 1), *model.pooled(window, [0]))
-        ]
+    firsts = rng.integers(0, len(frames) - 5, 50)
+    windows = np.stack([firsts, np.minimum(firsts + rng.integers(3, 59, 50), len(frames) - 1)], axis=1)
+    vectors = np.empty((50, model.stages.axes.shape[1]), np.float32)
+    EncodedStream(model, stream, windows).pool(0, 50, vectors)
+    for vector, (first, last) in zip(vectors, windows.tolist(), strict=True):
+        window = frames[first : last + 1]
+        mean_activities = [v.astype(np.float64) ** 4 for v in (vector, *model.pooled(window, [0]))]
         np.testing.assert_allclose(*mean_activities, rtol=3e-5, atol=2 / SCALE)
 
 
@@ -188,6 +188,12 @@ def ridge(vectors: np.ndarray, targets: np.ndarray, mean: np.ndarray, penalty: f
     x, y = vectors.astype(np.float64) - mean, targets - targets.mean(axis=0)
     axes = np.linalg.solve(x.T @ x + penalty * np.eye(x.shape[1]), x.T @ y)
     return axes, targets.mean(axis=0) - mean @ axes
+
+
+def fit_heads(
+    vectors: np.ndarray, completeness: np.ndarray, folds: np.ndarray, fold_count: int, shrinkage: float
+) -> FoldedHeads:
+    return folded(fitted_to(vectors, completeness, shrinkage), folds, fold_count)
 
 
 @pytest.mark.parametrize("seed", range(3))

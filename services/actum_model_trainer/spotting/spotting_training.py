@@ -19,11 +19,16 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import digest_of_streams
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.common_head import mixed, mixed_heads
-from actum_model_trainer.spotting.heads_training import Folds, window_rows
+from actum_model_trainer.spotting.heads_training import FoldedHeads, Folds, WindowRows, as_often, folded, window_rows
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.spotting.scanning import ScannedStream, scanned
 from actum_model_trainer.spotting.threshold_choice import ThresholdChoice, chosen_threshold, false_alarms
-from actum_model_trainer.spotting.training_windows import training_windows, true_completeness, with_false_alarms
+from actum_model_trainer.spotting.training_windows import (
+    TrainingWindows,
+    training_windows,
+    true_completeness,
+    windows_about,
+)
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.pyramid_spotter import FEWEST_FRAMES
@@ -32,8 +37,6 @@ from som_classifier.spotting.spotting_preset import SpottingPreset
 
 COARSE = 2
 """Intervals between two looks for false alarms to learn from: they last longer, and looking takes most of the time."""
-FIRST_VARIANTS = 2
-"""Variants of each window that the first heads learn from: they only look for false alarms; n windows cost n³."""
 SHORTEST_S = 0.2
 """Shortest window (s): a shorter movement is a twitch."""
 MIN_LOG_DURATION_SD = 0.15
@@ -55,18 +58,10 @@ def with_spotting(
     if not any(each.completeness.any() for each in windows):
         return model
     folds = Folds(usable, search.folds)
-    few = min(search.most_windows, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
-    less_varied = replace(preset, spotting=replace(search, most_windows=few))
-    first = window_rows(model, usable, windows, folds, less_varied, rng, progress).heads(folds.count, search.shrinkage)
-    coarse = before.model_copy(update={"interval_s": COARSE * search.interval_s})
-    answered = _mixed(scanned(model, usable, first, folds, coarse, progress), search.common_shares[0])
-    searching = SpottingModel(first.without[0], before)
-    alarms = false_alarms(answered, searching, model.labels, search.false_alarm_threshold)
-    windows = [with_false_alarms(*each, rng) for each in zip(usable, windows, alarms, strict=True)]
-    rows = window_rows(model, usable, windows, folds, preset, rng, progress)
-    coordinates, completeness = pooled_basis(model.kept).coordinates(rows.vectors), rows.completeness
-    heads = rows.heads(folds.count, search.shrinkage)
-    del rows
+    heads, parts = _trained_twice(model, usable, windows, folds, before, preset, rng, progress)
+    coordinates = np.concatenate([pooled_basis(model.kept).coordinates(each.vectors) for each in parts])
+    completeness = np.concatenate([each.completeness for each in parts])
+    del parts
     answered = scanned(model, usable, heads, folds, before, progress)
     if not any(len(each.windows) for each in answered):
         return model
@@ -78,6 +73,36 @@ def with_spotting(
     metadata = model.metadata.model_copy(update={"spotting": learned})
     kept = {**model.kept, **KeptWindows(coordinates, completeness, share, digest_of_background(streams)).arrays}
     return replace(model, heads=mixed_heads(heads.all, share), metadata=metadata, kept=kept)
+
+
+def _trained_twice(
+    model: PyramidModel,
+    streams: Sequence[LabelledStream],
+    windows: Sequence[TrainingWindows],
+    folds: Folds,
+    untuned: PyramidSpottingMetadata,
+    preset: PyramidPreset,
+    rng: np.random.Generator,
+    progress: Progress,
+) -> tuple[FoldedHeads, list[WindowRows]]:
+    """Return heads trained on windows and on what heads trained on these alone took for actions, and what they saw."""
+    search, rows = preset.spotting, window_rows(model, streams, windows, folds, preset, rng, progress)
+    fitted = rows.fitted(search.shrinkage)
+    heads = folded(fitted, rows.folds, folds.count)
+    coarse = untuned.model_copy(update={"interval_s": COARSE * search.interval_s})
+    answered = _mixed(scanned(model, streams, heads, folds, coarse, progress), search.common_shares[0])
+    searching = SpottingModel(heads.without[0], untuned)
+    alarms = false_alarms(answered, searching, model.labels, search.false_alarm_threshold)
+    about = [windows_about(stream, own, model.labels, rng) for stream, own in zip(streams, alarms, strict=True)]
+    if not _count(about):
+        return heads, [rows]
+    as_many = as_often(preset, min(_count(about) / _count(windows), 1.0))
+    more = window_rows(model, streams, about, folds, as_many, rng, progress)
+    return folded(more.added_to(fitted), np.concatenate([rows.folds, more.folds]), folds.count), [rows, more]
+
+
+def _count(windows: Sequence[TrainingWindows]) -> int:
+    return sum(len(of_stream.frames) for of_stream in windows)
 
 
 def usable_streams(streams: Sequence[LabelledStream]) -> list[LabelledStream]:
