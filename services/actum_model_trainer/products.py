@@ -3,10 +3,11 @@
 The parts are the same however many threads there are, and so are the results.
 """
 
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Sequence
 
-from actum.arrays import Array
+import numpy as np
+
+from actum.arrays import Array, Floats
 from actum_model_trainer.side_by_side import side_by_side
 
 LARGEST_AT_ONCE = 192
@@ -15,23 +16,21 @@ SMALLEST_HALVED = 1000
 """Rows of a product from which its halves are computed side by side: smaller ones take less than threads cost."""
 
 
-def inner_products(vectors: NDArray[np.float32]) -> Array:
-    """Return the inner products of vectors (n, inputs), (n, n)."""
-    count = len(vectors)
+def symmetric_product(left: Floats, right: Floats) -> Array:
+    """Return left @ right, (n, m) times (m, n), where it is symmetric: of its blocks beside the diagonal one each."""
+    count = len(left)
     if count < SMALLEST_HALVED:
-        return (vectors @ vectors.T).astype(np.float64)
-    halves = slice(0, count // 2), slice(count // 2, count)
-    products = np.empty((count, count))
+        return (left @ right).astype(np.float64, copy=False)
+    first, second = slice(0, count // 2), slice(count // 2, count)
+    result = np.empty((count, count))
 
-    def compute(which: tuple[slice, ...]) -> None:
-        for rows in which:
-            products[rows, rows] = vectors[rows] @ vectors[rows].T
-        if not which:
-            products[halves[0], halves[1]] = vectors[halves[0]] @ vectors[halves[1]].T
+    def compute(blocks: Sequence[tuple[slice, slice]]) -> None:
+        for rows, columns in blocks:
+            result[rows, columns] = left[rows] @ right[:, columns]
 
-    side_by_side(compute, [(), halves])
-    products[halves[1], halves[0]] = products[halves[0], halves[1]].T
-    return products
+    side_by_side(compute, [[(first, second)], [(first, first), (second, second)]])
+    result[second, first] = result[first, second].T
+    return result
 
 
 def product(left: Array, right: Array) -> Array:
@@ -67,9 +66,9 @@ def bordered(first: Array, beside: Array, last: Array) -> Array:
         last: the last block, (m, m).
     """
     count, by_first = len(first), product(first, beside)
-    rest = inverse_of(last - product(beside.T, by_first))
+    rest = inverse_of(last - symmetric_product(beside.T, by_first))
     corner, inverse = product(by_first, rest), np.empty((count + len(last),) * 2)
-    np.add(first, product(corner, by_first.T), out=inverse[:count, :count])
+    np.add(first, symmetric_product(corner, by_first.T), out=inverse[:count, :count])
     np.negative(corner, out=inverse[:count, count:])
     inverse[count:, :count], inverse[count:, count:] = inverse[:count, count:].T, rest
     return inverse

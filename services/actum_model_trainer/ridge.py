@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
-from actum_model_trainer.products import bordered, inner_products, inverse_of
+from actum_model_trainer.products import bordered, inverse_of, symmetric_product
 
 SMALLEST_LENGTH2 = 1e-9
 """Squared length of vectors: the penalty must not be 0 where all are the same."""
@@ -88,7 +88,7 @@ class DualRidge:
         """
         mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
         centred = vectors - mean
-        products = inner_products(centred)
+        products = symmetric_product(centred, centred.T)
         penalty = shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
         return cls(mean, centred, indicators, penalty, inverse_of(_penalised(products, penalty)))
 
