@@ -5,15 +5,15 @@ same up to rounding: the dual one for fewer vectors than inputs, the primal one 
 anew where rows are left out.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
-from actum_model_trainer.products import bordered, inverse_of, symmetric_product
+from actum_model_trainer.products import inner_products, inverse_root
 
 SMALLEST_LENGTH2 = 1e-9
 """Squared length of vectors: the penalty must not be 0 where all are the same."""
@@ -37,10 +37,6 @@ class Ridge(Protocol):
         """The scores of all rows, (n, actions)."""
         ...
 
-    def without(self, rows: Indices) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Return axes (inputs, actions) and offsets (actions,) of a regression that was fitted to all other rows."""
-        ...
-
     def held_out(self, rows: Indices) -> Array:
         """Return the scores (rows, actions) by a regression that was fitted to all other rows."""
         ...
@@ -58,87 +54,65 @@ def ridge(vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> 
         indicators: (n, actions).
         shrinkage: the penalty, in units of the mean squared length of the centred vectors.
     """
-    form = DualRidge.of if len(vectors) <= vectors.shape[1] else PrimalRidge
+    form = DualRidge if len(vectors) <= vectors.shape[1] else PrimalRidge
     return form(vectors, indicators, shrinkage)
 
 
-@dataclass(frozen=True, eq=False)
-class DualRidge:
-    """The axes are sought in the span of the vectors, so that one inverse of their inner products serves all folds.
+class DualForm(NamedTuple):
+    """What axes in the span of n vectors are sought from.
 
     Attributes:
         mean: (inputs,), of the vectors.
         centred: (n, inputs), the vectors less their mean.
-        indicators: (n, actions).
         penalty: of the squared axes.
-        inverse: of the penalised inner products, (n, n).
+        products: (n, n), the inner products of the centred vectors, with the penalty on their diagonal.
     """
 
     mean: NDArray[np.float32]
     centred: NDArray[np.float32]
-    indicators: Array
     penalty: float
-    inverse: Array
+    products: Array
 
     @classmethod
-    def of(cls, vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> "DualRidge":
-        """Fit, as `ridge` does.
-
-        The inner products are inverted in double precision: in single, inverses by blocks of thousands of rows diverge.
-        """
+    def of(cls, vectors: NDArray[np.float32], shrinkage: float) -> "DualForm":
+        """Centre vectors (n, inputs). The penalty is `shrinkage` times the mean squared length that is left of them."""
         mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
         centred = vectors - mean
-        products = symmetric_product(centred, centred.T)
+        products = inner_products(centred)
         penalty = shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
-        return cls(mean, centred, indicators, penalty, inverse_of(_penalised(products, penalty)))
+        products.ravel()[:: len(products) + 1] += penalty
+        return cls(mean, centred, penalty, products)
 
-    def and_also(self, vectors: NDArray[np.float32], indicators: Array) -> "DualRidge":
-        """Return the regression on these and more rows, with the same penalty, about the same mean of the vectors."""
-        centred = vectors - self.mean
-        beside, last = ((each @ centred.T).astype(np.float64) for each in (self.centred, centred))
-        return replace(
-            self,
-            centred=np.concatenate([self.centred, centred]),
-            indicators=np.concatenate([self.indicators, indicators]),
-            inverse=bordered(self.inverse, beside, _penalised(last, self.penalty)),
-        )
+    def fitted(self, dual: Array, intercept: Array) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Return the axes (inputs, actions) and offsets (actions,) of weights of the vectors (n, actions)."""
+        axes: NDArray[np.float32] = self.centred.T @ dual.astype(np.float32)
+        return axes, (intercept - self.mean @ axes).astype(np.float32)
 
-    @property
-    def axes(self) -> NDArray[np.float32]:
-        """The axes, (inputs, actions)."""
-        return self.fitted[0]
 
-    @property
-    def offsets(self) -> NDArray[np.float32]:
-        """The offsets, (actions,)."""
-        return self.fitted[1]
+class DualRidge:
+    """The axes are sought in the span of the vectors, so that one inverse of their inner products serves all folds.
 
-    @cached_property
-    def fitted(self) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """The axes (inputs, actions) and offsets (actions,)."""
-        return self._of(self._dual, self.indicators.mean(axis=0))
+    Of the inverse, only its root W is held: Wᵀ W is the inverse, and any block of it the product of columns of W.
+    """
 
-    @property
-    def scores(self) -> Array:
-        """The scores of all rows, (n, actions): what is to be answered less the penalty times the weights of rows."""
-        scores: Array = self.indicators - self.penalty * self._dual
-        return scores
-
-    def without(self, rows: Indices) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Return axes (inputs, actions) and offsets (actions,) of a regression that was fitted to all other rows."""
-        targets, intercept = self._targets_without(rows)
-        dual = self.inverse @ targets
-        dual -= self.inverse[:, rows] @ np.linalg.solve(self.inverse[np.ix_(rows, rows)], dual[rows])
-        return self._of(dual, intercept)
+    def __init__(self, vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> None:
+        form = DualForm.of(vectors, shrinkage)
+        self._indicators, self._root = indicators, inverse_root(form.products)
+        intercept: Array = indicators.mean(axis=0)
+        self._dual: Array = self._root.T @ (self._root @ (indicators - intercept))
+        self.axes, self.offsets = form.fitted(self._dual, intercept)
+        self.scores: Array = indicators - form.penalty * self._dual
 
     def held_out(self, rows: Indices) -> Array:
         """Return the scores (rows, actions) by a regression that was fitted to all other rows.
 
         By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted.
         """
-        targets, intercept = self._targets_without(rows)
-        own = self.inverse[rows]
-        scores: Array = intercept - np.linalg.solve(own[:, rows], own @ targets)
+        others = np.ones((len(self._indicators), 1), dtype=bool)
+        others[rows] = False
+        intercept: Array = self._indicators.mean(axis=0, where=others) if others.any() else np.zeros(len(self.offsets))
+        targets, own = np.where(others, self._indicators - intercept, 0.0), self._root[:, rows]
+        scores: Array = intercept - np.linalg.solve(own.T @ own, own.T @ (self._root @ targets))
         return scores
 
     def each_left_out(self, count: int) -> Array:
@@ -146,35 +120,9 @@ class DualRidge:
 
         By the leave-one-out formula of ridge regression. The intercept is that of all rows.
         """
-        scores: Array = self.indicators[count:] - self._dual[count:] / np.diag(self.inverse)[count:, None]
+        of_inverse = np.square(self._root[:, count:]).sum(axis=0)
+        scores: Array = self._indicators[count:] - self._dual[count:] / of_inverse[:, None]
         return scores
-
-    @cached_property
-    def _dual(self) -> Array:
-        """The weights of the rows, of which the axes consist, (n, actions)."""
-        dual: Array = self.inverse @ (self.indicators - self.indicators.mean(axis=0))
-        return dual
-
-    def _targets_without(self, rows: Indices) -> tuple[Array, Array]:
-        """Return the indicators less their mean over all other rows, 0 for these rows, (n, actions), and that mean."""
-        targets = self.indicators.copy()
-        targets[rows] = 0
-        others = np.ones(len(targets), dtype=bool)
-        others[rows] = False
-        intercept: Array = targets.sum(axis=0) / max(np.count_nonzero(others), 1)
-        targets[others] -= intercept
-        return targets, intercept
-
-    def _of(self, dual: Array, intercept: Array) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Return the axes (inputs, actions) and offsets (actions,) of weights of the vectors (n, actions)."""
-        axes: NDArray[np.float32] = self.centred.T @ dual.astype(np.float32)
-        return axes, (intercept - self.mean @ axes).astype(np.float32)
-
-
-def _penalised(products: Array, penalty: float) -> Array:
-    """Add the penalty to the diagonal of inner products (n, n), in place."""
-    products.ravel()[:: len(products) + 1] += penalty
-    return products
 
 
 @dataclass(frozen=True, eq=False)
@@ -222,9 +170,9 @@ class PrimalRidge:
         self._moments = _Moments.of(self._centred, indicators)
         length2 = float(np.trace(self._moments.products)) / len(vectors)
         self._penalty = shrinkage * max(length2, SMALLEST_LENGTH2)
-        self._mean = mean
         axes, self._intercept = self._moments.solution(self._penalty)
-        self.axes, self.offsets = self._of(axes, self._intercept)
+        self.axes: NDArray[np.float32] = axes.astype(np.float32)
+        self.offsets: NDArray[np.float32] = (self._intercept - mean @ self.axes).astype(np.float32)
 
     @cached_property
     def scores(self) -> Array:
@@ -232,14 +180,12 @@ class PrimalRidge:
         scores: Array = (self._centred @ self.axes).astype(np.float64) + self._intercept
         return scores
 
-    def without(self, rows: Indices) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Return axes (inputs, actions) and offsets (actions,) of a regression that was fitted to all other rows."""
-        return self._of(*self._solution_without(rows))
-
     def held_out(self, rows: Indices) -> Array:
         """Return the scores (rows, actions) by a regression that was fitted to all other rows."""
-        axes, intercept = self._solution_without(rows)
-        scores: Array = self._centred[rows] @ axes + intercept
+        centred = self._centred[rows]
+        rest = self._moments.without(_Moments.of(centred, self._indicators[rows]))
+        axes, intercept = rest.solution(self._penalty)
+        scores: Array = centred @ axes + intercept
         return scores
 
     def each_left_out(self, count: int) -> Array:
@@ -253,12 +199,3 @@ class PrimalRidge:
         errors = self._indicators[count:] - self.scores[count:]
         scores: Array = self._indicators[count:] - errors / (1 - leverages)[:, None]
         return scores
-
-    def _solution_without(self, rows: Indices) -> tuple[Array, Array]:
-        rest = self._moments.without(_Moments.of(self._centred[rows], self._indicators[rows]))
-        return rest.solution(self._penalty)
-
-    def _of(self, axes: Array, intercept: Array) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-        """Return axes (inputs, actions) and the offsets (actions,) with which they apply to vectors not centred."""
-        rounded = axes.astype(np.float32)
-        return rounded, (intercept - self._mean @ rounded).astype(np.float32)

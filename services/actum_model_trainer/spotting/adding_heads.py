@@ -14,7 +14,7 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.ridge import PrimalRidge
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.common_head import mixed_heads, with_common
-from actum_model_trainer.spotting.heads_training import Folds, as_often, window_rows
+from actum_model_trainer.spotting.heads_training import Folds, window_rows
 from actum_model_trainer.spotting.spotting_training import untuned, usable_streams
 from actum_model_trainer.spotting.training_windows import training_windows
 from som_classifier.presets import PyramidPreset
@@ -49,7 +49,7 @@ def with_added_heads(
     every = known_windows
     if usable:
         drawn = [training_windows(each, model.labels, np.array(learned.window_durations_s), rng) for each in usable]
-        as_many = as_often(preset, model.metadata.samples / before.metadata.samples - 1)
+        as_many = _as_often(preset, model.metadata.samples / before.metadata.samples - 1)
         rows = window_rows(model, usable, drawn, Folds(usable, 1), as_many, rng, progress)
         every = every.and_also(pooled_basis(model.kept).coordinates(rows.vectors), rows.completeness)
     shrinkage = preset.spotting.shrinkage
@@ -85,6 +85,11 @@ def _changed(
     axes[:, places] += before.heads.axes - without.axes[:, places]
     offsets[places] += before.heads.offsets - without.offsets[places]
     return CompletenessHeads(axes, offsets)
+
+
+def _as_often(preset: PyramidPreset, share: float) -> PyramidPreset:
+    """Return the preset that draws new windows as often as those kept were: this share of their number."""
+    return replace(preset, spotting=replace(preset.spotting, most_windows=round(share * preset.spotting.most_windows)))
 
 
 def _learned(

@@ -1,7 +1,7 @@
 """Training of the completeness heads on windows: ridge regression, once on all windows and once without each fold."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
 from actum_model_trainer.augmentation import Variant, augmentation_for, varied
+from actum_model_trainer.products import solution
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.ridge import DualRidge
+from actum_model_trainer.ridge import DualForm
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.spotting.common_head import with_common
@@ -19,19 +20,6 @@ from actum_model_trainer.spotting.training_windows import TrainingWindows
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.spotting_model import CompletenessHeads
-
-
-@dataclass(frozen=True, eq=False)
-class FoldedHeads:
-    """Heads trained on all windows, and on those of all folds but one.
-
-    Attributes:
-        all: trained on all windows.
-        without: by the fold that was left out.
-    """
-
-    all: CompletenessHeads
-    without: Sequence[CompletenessHeads]
 
 
 class Folds:
@@ -67,13 +55,9 @@ class WindowRows(NamedTuple):
     completeness: Array
     folds: Indices
 
-    def fitted(self, shrinkage: float) -> DualRidge:
-        """Fit the actions' heads and the common one."""
-        return fitted_to(self.vectors, with_common(self.completeness), shrinkage)
-
-    def added_to(self, fitted: DualRidge) -> DualRidge:
-        """Fit heads to these windows and those before."""
-        return fitted.and_also(self.vectors, with_common(self.completeness))
+    def heads(self, left_out: Sequence[int | None], shrinkage: float) -> list[CompletenessHeads]:
+        """Train the actions' heads and the common one without each of these folds; None leaves out none."""
+        return fit_heads(self.vectors, with_common(self.completeness), self.folds, left_out, shrinkage)
 
 
 def window_rows(
@@ -98,11 +82,6 @@ def window_rows(
     side_by_side(pool, range(len(drawn)), "windows of streams", progress)
     of_fold = [folds.of(each.stream, each.frames) for each in drawn]
     return WindowRows(vectors, np.concatenate([each.completeness for each in drawn]), np.concatenate(of_fold))
-
-
-def as_often(preset: PyramidPreset, share: float) -> PyramidPreset:
-    """Return the preset that draws other windows as often as those before: this share of their number."""
-    return replace(preset, spotting=replace(preset.spotting, most_windows=round(share * preset.spotting.most_windows)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,27 +127,32 @@ class _Drawn:
             encoded.pool(0, own.stop - own.start, out[own])
 
 
-def fitted_to(vectors: NDArray[np.float32], completeness: Array, shrinkage: float) -> DualRidge:
-    """Fit completeness = vectors * axes + offsets by least squares + penalty * ‖axes‖².
+def fit_heads(
+    vectors: NDArray[np.float32],
+    completeness: Array,
+    folds: Indices,
+    left_out: Sequence[int | None],
+    shrinkage: float,
+) -> list[CompletenessHeads]:
+    """Fit completeness = vectors * axes + offsets by least squares + penalty * ‖axes‖², without each of some folds.
+
+    The axes are sought in the span of the vectors (`DualForm`), so that one matrix of n × n inner products serves all.
 
     Args:
         vectors: (n, inputs).
         completeness: (n, actions).
+        folds: (n,).
+        left_out: of the folds, which may hold no window or all of them; None leaves out none.
         shrinkage: relative penalty.
     """
-    return DualRidge.of(vectors, completeness, shrinkage)
+    form = DualForm.of(vectors, shrinkage)
 
+    def without(fold: int | None) -> CompletenessHeads:
+        kept = np.flatnonzero(folds != fold)
+        intercept = completeness[kept].mean(axis=0) if len(kept) else np.zeros(completeness.shape[1])
+        dual = np.zeros(completeness.shape)
+        inner = form.products if fold is None else form.products[np.ix_(kept, kept)]
+        dual[kept] = solution(inner, completeness[kept] - intercept)
+        return CompletenessHeads(*form.fitted(dual, intercept))
 
-def folded(fitted: DualRidge, folds: Indices, fold_count: int) -> FoldedHeads:
-    """Return the heads fitted to all windows, and to those of all folds but one.
-
-    Args:
-        fitted: to n windows.
-        folds: (n,), 0 to fold_count - 1.
-        fold_count: how many there are; some may hold no window.
-    """
-
-    def without(fold: int) -> CompletenessHeads:
-        return CompletenessHeads(*fitted.without(np.flatnonzero(folds == fold)))
-
-    return FoldedHeads(CompletenessHeads(*fitted.fitted), side_by_side(without, range(fold_count)))
+    return side_by_side(without, left_out)

@@ -19,7 +19,7 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import digest_of_streams
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.common_head import mixed, mixed_heads
-from actum_model_trainer.spotting.heads_training import FoldedHeads, Folds, WindowRows, as_often, folded, window_rows
+from actum_model_trainer.spotting.heads_training import Folds, window_rows
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.spotting.scanning import ScannedStream, scanned
 from actum_model_trainer.spotting.threshold_choice import ThresholdChoice, chosen_threshold, false_alarms
@@ -27,7 +27,7 @@ from actum_model_trainer.spotting.training_windows import (
     TrainingWindows,
     training_windows,
     true_completeness,
-    windows_about,
+    with_false_alarms,
 )
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
@@ -37,6 +37,10 @@ from som_classifier.spotting.spotting_preset import SpottingPreset
 
 COARSE = 2
 """Intervals between two looks for false alarms to learn from: they last longer, and looking takes most of the time."""
+FIRST_WINDOWS = 3000
+"""Windows that the first heads learn from: they only look for false alarms; n windows cost n³."""
+FIRST_VARIANTS = 2
+"""Of each of these windows, at most."""
 SHORTEST_S = 0.2
 """Shortest window (s): a shorter movement is a twitch."""
 MIN_LOG_DURATION_SD = 0.15
@@ -58,24 +62,25 @@ def with_spotting(
     if not any(each.completeness.any() for each in windows):
         return model
     folds = Folds(usable, search.folds)
-    heads, parts = _trained_twice(model, usable, windows, folds, before, preset, rng, progress)
-    coordinates = np.concatenate([pooled_basis(model.kept).coordinates(each.vectors) for each in parts])
-    completeness = np.concatenate([each.completeness for each in parts])
-    del parts
-    answered = scanned(model, usable, heads, folds, before, progress)
+    windows = _with_false_alarms(model, usable, windows, folds, before, preset, rng, progress)
+    rows = window_rows(model, usable, windows, folds, preset, rng, progress)
+    coordinates, completeness = pooled_basis(model.kept).coordinates(rows.vectors), rows.completeness
+    heads, *of_others = rows.heads([None, *range(folds.count)], search.shrinkage)
+    del rows
+    answered = scanned(model, usable, of_others, folds, before, progress)
     if not any(len(each.windows) for each in answered):
         return model
-    share, choice = _chosen(answered, SpottingModel(heads.all, before), model.labels, search)
+    share, choice = _chosen(answered, SpottingModel(heads, before), model.labels, search)
     probability = _probability(_mixed(answered, share), model.labels)
     people = len({stream.person for stream in usable if stream.segments})
     threshold = float(averaged_with_prior(choice.threshold, preset.prior.threshold, preset.prior, people))
     learned = before.model_copy(update=choice.stored | {"threshold": threshold, "probability": probability})
     metadata = model.metadata.model_copy(update={"spotting": learned})
     kept = {**model.kept, **KeptWindows(coordinates, completeness, share, digest_of_background(streams)).arrays}
-    return replace(model, heads=mixed_heads(heads.all, share), metadata=metadata, kept=kept)
+    return replace(model, heads=mixed_heads(heads, share), metadata=metadata, kept=kept)
 
 
-def _trained_twice(
+def _with_false_alarms(
     model: PyramidModel,
     streams: Sequence[LabelledStream],
     windows: Sequence[TrainingWindows],
@@ -84,25 +89,18 @@ def _trained_twice(
     preset: PyramidPreset,
     rng: np.random.Generator,
     progress: Progress,
-) -> tuple[FoldedHeads, list[WindowRows]]:
-    """Return heads trained on windows and on what heads trained on these alone took for actions, and what they saw."""
-    search, rows = preset.spotting, window_rows(model, streams, windows, folds, preset, rng, progress)
-    fitted = rows.fitted(search.shrinkage)
-    heads = folded(fitted, rows.folds, folds.count)
+) -> list[TrainingWindows]:
+    """Add windows about what heads that are trained on the others take for actions in background."""
+    search = preset.spotting
+    few = min(search.most_windows, FIRST_WINDOWS, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
+    less_varied = replace(preset, spotting=replace(search, most_windows=few))
+    rows = window_rows(model, streams, windows, folds, less_varied, rng, progress)
+    of_others = rows.heads(range(folds.count), search.shrinkage)
     coarse = untuned.model_copy(update={"interval_s": COARSE * search.interval_s})
-    answered = _mixed(scanned(model, streams, heads, folds, coarse, progress), search.common_shares[0])
-    searching = SpottingModel(heads.without[0], untuned)
+    answered = _mixed(scanned(model, streams, of_others, folds, coarse, progress), search.common_shares[0])
+    searching = SpottingModel(of_others[0], untuned)
     alarms = false_alarms(answered, searching, model.labels, search.false_alarm_threshold)
-    about = [windows_about(stream, own, model.labels, rng) for stream, own in zip(streams, alarms, strict=True)]
-    if not _count(about):
-        return heads, [rows]
-    as_many = as_often(preset, min(_count(about) / _count(windows), 1.0))
-    more = window_rows(model, streams, about, folds, as_many, rng, progress)
-    return folded(more.added_to(fitted), np.concatenate([rows.folds, more.folds]), folds.count), [rows, more]
-
-
-def _count(windows: Sequence[TrainingWindows]) -> int:
-    return sum(len(of_stream.frames) for of_stream in windows)
+    return [with_false_alarms(*each, rng) for each in zip(streams, windows, alarms, strict=True)]
 
 
 def usable_streams(streams: Sequence[LabelledStream]) -> list[LabelledStream]:

@@ -76,17 +76,18 @@ def training_windows(
     return TrainingWindows(windows, true_completeness(stream, windows, labels))
 
 
-def windows_about(
-    stream: LabelledStream, alarms: Sequence[Detection], labels: Sequence[str], rng: np.random.Generator
+def with_false_alarms(
+    stream: LabelledStream, windows: TrainingWindows, alarms: Sequence[Detection], rng: np.random.Generator
 ) -> TrainingWindows:
-    """Draw windows about each false alarm in a stream, which hold none of the actions."""
+    """Add windows about each false alarm in a stream, which hold none of the actions."""
     frames = []
     for alarm in alarms:
         duration_ns = alarm.end_ns - alarm.start_ns
         for shift_start, shift_end in rng.uniform(-JITTER, JITTER, (FALSE_ALARM, 2)) * duration_ns:
             frames.append(_frames_within(stream.stamps_ns, alarm.start_ns + shift_start, alarm.end_ns + shift_end))
-    drawn = np.array([each for each in frames if each[1] - each[0] + 1 >= FEWEST_FRAMES], dtype=np.intp).reshape(-1, 2)
-    return TrainingWindows(drawn, np.zeros((len(drawn), len(labels))))
+    added = np.array([each for each in frames if each[1] - each[0] + 1 >= FEWEST_FRAMES], dtype=np.intp).reshape(-1, 2)
+    none = np.zeros((len(added), windows.completeness.shape[1]))
+    return TrainingWindows(np.concatenate([windows.frames, added]), np.concatenate([windows.completeness, none]))
 
 
 def true_completeness(stream: LabelledStream, frames: Indices, labels: Sequence[str]) -> Array:
