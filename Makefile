@@ -11,7 +11,7 @@ PYTHONS ?= python3.11 python3.12 python3.13
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench check-speed bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-growth bench-many bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench check-speed bench-camera bench-camera-continuous bench-camera-latency bench-continuous bench-growth bench-intent bench-many bench-maps bench-recognition bench-objects bench-page bench-paper bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -125,6 +125,9 @@ bench-continuous: $(STAMP)  ## finding actions that nobody marked, beside peers 
 
 bench-growth: $(STAMP)  ## what training costs with 1,000 to 30,000 segments of 100 actions, about half an hour
 	$(BIN)/python -m benchmarks.growth
+
+bench-intent: $(STAMP)  ## how early contacts of hands with objects are foreseen, beside what is simpler; about ten minutes
+	$(BIN)/python -m benchmarks.intent
 
 bench-many: $(STAMP)  ## crowds before five sensors, and shared sensors whose classifiers are killed; about five minutes
 	$(BIN)/python -m benchmarks.many

@@ -35,6 +35,8 @@ RESULTS = {
     "Without marks: what was tried": "benchmarks/continuous/README",
     "Objects": "benchmarks/objects/results",
     "Hands and objects": "benchmarks/bimacs",
+    "Contacts foreseen": "benchmarks/intent/results",
+    "Contacts foreseen: what was tried": "benchmarks/intent/README",
     "Cuts": "benchmarks/cutting",
     "Webcam": "benchmarks/camera/results",
     "Webcam, found live": "benchmarks/camera/continuous",

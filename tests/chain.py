@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum import keys
-from actum.messages import Action, Message
+from actum.messages import Action, Intent, Message
 from actum.node import Node, Numbering, Tick, replay
 from recognisers import tiny_model
 from som_classifier.node import SomClassifier
@@ -67,9 +67,9 @@ def merged(streams: Iterable[list[Arrival]]) -> list[Arrival]:
 
 
 def answers(streams: dict[str, list[Arrival]], actions_late_ns: int = 0) -> list[Message]:
-    """Run the chain: every final action and every event, by segment."""
+    """Run the chain: every final action and every event, by segment; intents rest on what has arrived."""
     put = replayed(SomClassifier(tiny_model()), merged(streams.values()))
     finals = [(at_ns + actions_late_ns, m) for at_ns, m in put if isinstance(m, Action) and m.final]
     events = replayed(ActionFusion(Settings()), merged([*streams.values(), finals]))
-    answered = [message for _, message in [*finals, *events]]
+    answered = [message for _, message in [*finals, *events] if not isinstance(message, Intent)]
     return sorted(answered, key=lambda message: (message.segment_id, message.SCHEMA, without_seq([message])))

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from actum.messages import Action, Image, Segment, Skeleton, Status
+from actum.messages import Action, Image, Intended, Intent, Segment, Skeleton, Status
 
 
 def skeleton(stamp_ns: int, seq: int | None = None, session_id: str = "then") -> Skeleton:
@@ -53,6 +53,18 @@ def action(start_ns: int, end_ns: int | None, segment_id: str = "one", **fields:
         missed=0,
         **({"final": True} | fields),
     )
+
+
+def contact(probability: float, **fields: Any) -> Intended:
+    """A contact of the right hand with the cup that may come half a second later."""
+    given = {"action": "lift", "object_id": 2, "object_name": "cup", "hand": "right", "probability": probability}
+    return Intended.model_validate(
+        {**given, "contact_s": 0.5, "contact_std_s": 0.15, "place_m": [0.1, 0.2, 1.5], **fields}
+    )
+
+
+def intent(stamp_ns: int, *intended: Intended, **fields: Any) -> Intent:
+    return Intent(stamp_ns=stamp_ns, sensor="kinect0", intended=list(intended), **({"agent": 1} | fields))
 
 
 def status(state: str = "running") -> Status:

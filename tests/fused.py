@@ -2,16 +2,20 @@
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
-from actum.messages import Action, Event, Message
+from actum.messages import Action, Event, Intent, Message
 from scenes import Scene
 
 
 def events_of(node: ActionFusion, *messages: Message) -> list[Event]:
-    """Feed a node one message after the other; all that it answers are events."""
-    answered = [answer for message in messages for answer in node.handle(message)]
-    events = [answer for answer in answered if isinstance(answer, Event)]
-    assert events == answered
-    return events
+    """Feed a node one message after the other; all that it puts are events and intents."""
+    put = [each for message in messages for each in node.handle(message)]
+    assert {type(each) for each in put} <= {Event, Intent}
+    return [each for each in put if isinstance(each, Event)]
+
+
+def intents_of(node: ActionFusion, *messages: Message) -> list[Intent]:
+    """Feed a node one message after the other; return the intents that it puts."""
+    return [each for message in messages for each in node.handle(message) if isinstance(each, Intent)]
 
 
 def event_of(*messages: Message, **chosen: object) -> Event:

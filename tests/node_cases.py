@@ -183,7 +183,7 @@ FUSION = Case(
     partial(_scene, -1.0, -1.0 + WARM_UP / 30),
     _acted,
     _of_segment,
-    r"actum/kinect0/event/\d+",
+    r"actum/kinect0/(event|intent)/\d+",
 )
 
 CASES = (PREPROCESSOR, CLASSIFIER, TRACKER, FUSION)

@@ -4,9 +4,10 @@ import threading
 from collections.abc import Iterator
 from typing import Any
 
-from actum.messages import Action, Message, Objects, Status, TrackedObject
+from actum.messages import Action, Intended, Message, Objects, Status, TrackedObject
 from actum.node import SECOND_NS
 from dashboards import Served
+from empty_messages import contact, intent
 from events import event
 from live import wait_until
 from node_cases import photograph
@@ -23,6 +24,7 @@ class Scene:
     def __init__(self, page: Served) -> None:
         self.page = page
         self.still = False
+        self.contact: Intended | None = None
         self.stamp_ns = 1_700_000_000_000_000_000
         self._preprocessor = PosePreprocessor(PoseSettings.defaults())
         self._frames = reaches(60)
@@ -49,6 +51,8 @@ class Scene:
         frame = self._frames[pose].model_copy(update={"stamp_ns": self.stamp_ns, "seq": number})
         yield frame
         yield from (output for output in self._preprocessor.handle(frame) if isinstance(output, Message))
+        if (expected := self.contact) is not None:
+            yield intent(self.stamp_ns, expected, segment_id="one")
         if number % 2 == 0:
             yield photograph(self.stamp_ns)
             yield objects(self.stamp_ns, 0.1 * pose / len(self._frames))
@@ -60,6 +64,16 @@ class Scene:
         """Let some time of the scene pass."""
         until_ns = self.stamp_ns + int(seconds * SECOND_NS)
         wait_until(lambda: self.stamp_ns >= until_ns, "the scene goes on")
+
+    def reach(self, probability: float, contact_s: float) -> None:
+        """From now on put with each frame that the person, in the segment `one`, is about to touch the cup."""
+        self.contact = contact(probability, contact_s=contact_s)
+
+    def end_reach(self, silently: bool) -> None:
+        """Put such intents no more: first an empty one, unless the person is lost from view."""
+        self.contact = None
+        if not silently:
+            self.page.give(intent(self.stamp_ns))
 
     def answer(self, segment_id: str, sentence: str, confidence: float = 0.9) -> None:
         """Put an early answer, a final action and the event of one segment that ends now."""

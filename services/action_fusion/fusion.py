@@ -1,7 +1,9 @@
 """Fuse an action, its actor's postures and the objects' positions to one event."""
 
+from bisect import bisect_left
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -47,7 +49,7 @@ def fuse(
         settings: thresholds and labels.
     """
     start_ns = action.start_ns
-    acting = [sample for sample in postures if sample.stamp_ns >= start_ns]
+    acting = postures[bisect_left(postures, start_ns, key=attrgetter("stamp_ns")) :]
     tracked = hand_tracks(hands[0], hands[1:])
     actor = actor_of(acting, start_ns)
     objects = object_tracks(sightings, frames)

@@ -8,14 +8,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from action_fusion.fusion import fuse, rejected
-from action_fusion.intake.buffers import LATEST_ACTION_NS, Buffer, KnownObjects, ObjectsBuffer, PostureBuffer, S
+from action_fusion.intake.buffers import LATEST_ACTION_NS, Buffer, KnownObjects, ObjectsBuffer, PostureBuffers, S
 from action_fusion.intake.losses import Before
-from action_fusion.intake.stream_samples import PostureSample, objects_sample, posture_sample
+from action_fusion.intake.stream_samples import ObjectsSample, objects_sample, posture_sample
+from action_fusion.intent.intents import Intents
 from action_fusion.settings import Settings
 from actum import keys
 from actum.commands import Command
 from actum.flow import Flow
-from actum.limits import MAX_SKEW_NS, MOST_FRAMES, MOST_STREAMS
+from actum.limits import MAX_SKEW_NS
 from actum.messages import Action, Event, Message, Objects, Posture
 from actum.node import SECOND_NS, Counters, Tick
 from actum.parameters import LiveParameters
@@ -69,9 +70,10 @@ class ActionFusion:
         self.counters = Counters()
         self._use_settings(settings)
         self._parameters = LiveParameters(settings, LIVE, self._use_settings)
-        self._postures: dict[int, PostureBuffer] = {}
+        self._postures = PostureBuffers(self.counters)
         self._objects = ObjectsBuffer()
         self._known = KnownObjects(self.counters)
+        self._intents = Intents()
         self._pending: list[Pending] = []
         self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
         self._before = Before()
@@ -96,24 +98,34 @@ class ActionFusion:
         return self._parameters.commands
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Process one posture, objects message, action or tick; return the events that it completes."""
+        """Process one posture, objects message, action or tick; return what it completes or lets expect."""
         match message:
             case Posture():
-                sample = posture_sample(message, self.counters)
-                return self._take(self._buffer(message.agent), sample, f"posture of agent {message.agent}")
+                return self._posture(message)
             case Objects():
                 return self._take(self._objects, objects_sample(self._known.known(message), self.counters), "objects")
             case Action(final=True):
                 self._ongoing.pop(message.segment_id, None)
+                self._intents.action(message)
                 return self._action(message)
             case Action():
                 self._ongoing[message.segment_id] = self._now_ns
+                self._intents.action(message)
             case Tick():
                 return self._tick(message)
         return []
 
     def _use_settings(self, settings: Settings) -> None:
         self._settings = settings
+
+    def _posture(self, posture: Posture) -> list[Message]:
+        """Take a posture; return the events that it completes, then what the person is about to touch."""
+        sample, buffer = posture_sample(posture, self.counters), self._postures.of(posture.agent)
+        events = self._take(buffer, sample, f"posture of agent {posture.agent}")
+        if not posture.agent or sample.body is None or buffer.newest is not sample:
+            return [*events]
+        intent = self._intents.posture(sample, posture.agent, posture.sensor)
+        return [*events] if intent is None else [*events, intent]
 
     def _take(self, buffer: Buffer[S], sample: S, what: str) -> list[Event]:
         """Add a sample to its stream; return the events of actions that waited for it or lie before a restart."""
@@ -130,9 +142,12 @@ class ActionFusion:
                 if stream.newest_ns > sample.stamp_ns + MAX_SKEW_NS:
                     stream.clear()
             self._answered.clear()
+            self._intents.clear()
         if buffer.is_too_late(sample.stamp_ns):
             self.counters.reject("late", f"{what} at {sample.stamp_ns}, after its segment was answered")
         buffer.append(sample)
+        if isinstance(sample, ObjectsSample):
+            self._intents.objects(sample)
         self._flows[Objects if buffer is self._objects else Posture].note()
         self._make_room()
         return events + self._complete()
@@ -142,9 +157,7 @@ class ActionFusion:
         if len(self._objects) > MOST_SIGHTINGS:
             self._objects.let_go()
             self.counters.reject("too_many_frames", f"more than {MOST_SIGHTINGS} messages of objects in a minute")
-        if sum(map(len, self._postures.values())) > MOST_FRAMES:
-            max(self._postures.values(), key=len).let_go()
-            self.counters.reject("too_many_frames", f"more than {MOST_FRAMES} postures in a minute")
+        self._postures.make_room()
 
     def _action(self, action: Action) -> list[Event]:
         if self._before.answered(action):
@@ -188,10 +201,7 @@ class ActionFusion:
 
     def _may_come_no_more(self, pending: Pending, since_ns: int) -> bool:
         """Tell whether an action that has waited for its samples since a tick is to be answered without them."""
-        newest_ns = {
-            Posture: max((buffer.newest_ns for buffer in self._postures.values()), default=-1),
-            Objects: self._objects.newest_ns,
-        }
+        newest_ns = {Posture: self._postures.newest_ns, Objects: self._objects.newest_ns}
         return all(
             newest_ns[kind] >= pending.end_ns or flow.ended(since_ns, WAIT_NS) for kind, flow in self._flows.items()
         )
@@ -206,29 +216,16 @@ class ActionFusion:
         reached = (-1 if postures is None else postures.newest_ns, self._objects.newest_ns)
         if not all(pending.end_ns <= newest_ns <= pending.end_ns + LATEST_ACTION_NS for newest_ns in reached):
             return False
-        others = self._others(pending.action.agent, self._own(pending))
+        others = self._postures.others(pending.action.agent, pending.action.start_ns, pending.end_ns)
         return all(buffer is not None and buffer.newest_ns >= last_ns for buffer, last_ns in others)
-
-    def _own(self, pending: Pending) -> list[PostureSample]:
-        """List the acting person's postures in the segment and before it."""
-        return self._buffer(pending.action.agent).of_segment(pending.action.start_ns, pending.end_ns)
-
-    def _others(self, agent: int, postures: Sequence[PostureSample]) -> list[tuple[PostureBuffer | None, int]]:
-        """List the streams of the other people in the image, and the stamp at which each was in it last (ns)."""
-        last_ns: dict[int, int] = {}
-        newer: tuple[int, ...] = (agent,)
-        for sample in reversed(postures):
-            if sample.agents != newer:
-                last_ns = dict.fromkeys(sample.agents, sample.stamp_ns) | last_ns
-                newer = sample.agents
-        return [(self._postures.get(other), last) for other, last in sorted(last_ns.items()) if other != agent]
 
     def _answer(self, pending: Pending) -> Event:
         self._pending.remove(pending)
         action, start_ns, end_ns = pending.action, pending.action.start_ns, pending.end_ns
-        postures = self._own(pending)
-        others = [buffer for buffer, _ in self._others(action.agent, postures) if buffer is not None]
-        for buffer in (self._buffer(action.agent), self._objects):
+        own = self._postures.of(action.agent)
+        others = self._postures.others(action.agent, start_ns, end_ns)
+        people = [own, *(buffer for buffer, _ in others if buffer is not None)]
+        for buffer in (own, self._objects):
             buffer.mark_answered(start_ns, end_ns)
         of_people = [buffer.stamps_since(start_ns) for buffer in self._postures.values()]
         postures_ns = sorted(ns for stamps_ns in of_people if len(stamps_ns) for ns in stamps_ns[[0, -1]].tolist())
@@ -238,19 +235,9 @@ class ActionFusion:
             return rejected(action, reason)
         return fuse(
             action,
-            postures,
-            [buffer.hands_of_segment(start_ns, end_ns) for buffer in (self._buffer(action.agent), *others)],
+            own.of_segment(start_ns, end_ns),
+            [buffer.hands_of_segment(start_ns, end_ns) for buffer in people],
             self._objects.sightings_of_segment(start_ns, end_ns),
             self._objects.of_segment(start_ns, end_ns),
             self._settings,
         )
-
-    def _buffer(self, agent: int) -> PostureBuffer:
-        """Return an agent's stream; where there are too many, an empty one or the one used least recently goes."""
-        buffer = self._postures.pop(agent) if agent in self._postures else PostureBuffer()
-        if len(self._postures) == MOST_STREAMS:
-            gone = next((each for each, kept in self._postures.items() if not kept), next(iter(self._postures)))
-            if self._postures.pop(gone):
-                self.counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {gone} is forgotten")
-        self._postures[agent] = buffer
-        return buffer

@@ -18,6 +18,7 @@ from actum.messages import (
     Event,
     HeldBack,
     Image,
+    Intent,
     Message,
     Objects,
     Posture,
@@ -123,12 +124,24 @@ def _content(message: Message) -> str:
             text = f"{message.kind} {escape(message.segment_id)}{label}{origin}"
         case HeldBack():
             text = f"[dim]not told: {escape(message.sentence)}[/dim]"
+        case Intent():
+            text = _intent(message)
         case Truth():
             done = f'{message.action} {message.object_id} "{message.object_name}"'
             text = f"{message.kind} {escape(message.segment_id)}: {escape(done)}"
         case Status():
             text = f"{escape(message.state)}, {sum(message.rates.values()):.0f} messages/s"
     return text
+
+
+def _intent(message: Intent) -> str:
+    """Describe the likeliest contact; an intent without any ends a reach."""
+    if not message.intended:
+        return "[dim]the reach is over[/dim]"
+    likeliest = message.intended[0]
+    reach = f"reaches for {escape(likeliest.object_name)} ({likeliest.object_id}) with the {likeliest.hand} hand"
+    when = f"contact in {likeliest.contact_s:.2f} s ± {likeliest.contact_std_s:.2f}"
+    return f"{likeliest.probability:.2f}  {reach}, {when}"
 
 
 def _posture(message: Posture) -> str:

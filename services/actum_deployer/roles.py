@@ -50,7 +50,11 @@ class Role:
         return bool(self.ros_puts)
 
 
-ROS_TOPICS = (*(f"{BASE}/{{}}/{name}" for name in ("skeletons", "objects", "event", "event_json")), "tf", "tf_static")
+ROS_TOPICS = (
+    *(f"{BASE}/{{}}/{name}" for name in ("skeletons", "objects", "event", "event_json", "intent")),
+    "tf",
+    "tf_static",
+)
 """What the bridge publishes on ROS 2's keys, below a domain, in the namespace that it has unless it is told another."""
 ROS_MARKS = (f"{BASE}/{{}}/mark",)
 """What it subscribes to."""
@@ -89,7 +93,7 @@ FUSION = Role(
     "the fusion",
     services=("action_fusion",),
     serves_several=True,
-    puts=(keys.EVENT,),
+    puts=(keys.EVENT, keys.INTENT),
     reads=(keys.POSTURE, keys.OBJECTS, keys.ACTION, keys.EVENT),
 )
 TRAINER = Role(
@@ -114,7 +118,7 @@ BRIDGE = Role(
     "the bridge to ROS 2, which publishes marks for ROS 2 nodes",
     services=("ros2_bridge",),
     puts=(keys.SEGMENT,),
-    reads=(keys.SKELETON, keys.OBJECTS, keys.EVENT),
+    reads=(keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT),
     ros_puts=ROS_TOPICS,
     ros_reads=ROS_MARKS,
 )

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
 
-from actum.messages import Action, Event, Hand, Segment, Truth
+from actum.messages import Action, Event, Hand, Intent, Segment, Truth
 
-Naming = Segment | Action | Event | Truth
-"""The messages that name a segment: its marks, its answers and its ground truth."""
+Naming = Segment | Action | Event | Intent | Truth
+"""The messages that name a segment: its marks, its answers, the intents while it went on, and its ground truth."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class MarkedSegment:
         return self.label is not None and self.bounds_ns is not None
 
     def has(self, message: Naming) -> bool:
-        """Return whether a message with a stamp is a mark of this segment, an answer to it or its ground truth."""
+        """Return whether a message with a stamp names this segment: as a mark, an answer, an intent or its truth."""
         if (message.sensor, message.segment_id) != (self.sensor, self.segment_id):
             return False
         at_ns = message.start_ns if isinstance(message, Action | Event) else message.stamp_ns

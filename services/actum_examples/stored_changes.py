@@ -16,7 +16,7 @@ from actum.skeletons import INDEX
 from actum_examples.marked_segment import MarkedSegment, Naming
 from som_classifier.handedness import OPPOSITE
 
-NAMING = (keys.SEGMENT, keys.ACTION, keys.EVENT, keys.TRUTH)
+NAMING = (keys.SEGMENT, keys.ACTION, keys.EVENT, keys.INTENT, keys.TRUTH)
 """The topics whose messages name a segment."""
 TORSO = INDEX["torso"]
 
@@ -36,7 +36,7 @@ def in_turn(*changes: Change) -> Change:
 
 
 def without_messages(segments: Iterable[MarkedSegment]) -> Change:
-    """Return the change that leaves out what names these segments: marks, answers and ground truth."""
+    """Return the change that leaves out what names these segments: marks, answers, intents and ground truth."""
     gone = list(segments)
 
     def change(stored: StoredMessage) -> StoredMessage | None:

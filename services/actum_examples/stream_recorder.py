@@ -20,6 +20,7 @@ STREAMS = frozenset(
         keys.ACTION,
         keys.HELD_BACK,
         keys.EVENT,
+        keys.INTENT,
         keys.TRUTH,
     },
 )

@@ -9,7 +9,7 @@ from actum import keys
 from actum.arrays import Array, joints_to_array
 from actum.bridge import Foreign, ForeignNode
 from actum.limits import MAX_COORDINATE_M
-from actum.messages import Agent, Event, Message, Objects, Skeleton
+from actum.messages import Agent, Event, Intent, Message, Objects, Skeleton
 from actum.node import Counters, Tick
 from actum.skeletons import JOINTS
 from ros2_bridge import conversion, frames, topics
@@ -20,10 +20,10 @@ from ros2_bridge.topics import RosTopic
 
 
 class Ros2Bridge:
-    """Republishes skeletons, objects and events on ROS 2 topics, and takes marks from one."""
+    """Republishes skeletons, objects, events and intents on ROS 2 topics, and takes marks from one."""
 
     name = "ros2_bridge"
-    inputs = (keys.SKELETON, keys.OBJECTS, keys.EVENT)
+    inputs = (keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT)
 
     def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
@@ -42,9 +42,9 @@ class Ros2Bridge:
                 return []
             self._camera_published = True
             return self._on(topics.TF_STATIC, conversion.optical_in_link, self._settings.sensor)
-        if not isinstance(message, Skeleton | Objects | Event):
+        if not isinstance(message, Skeleton | Objects | Event | Intent):
             return []
-        if isinstance(message, Skeleton | Objects) and not message.valid:
+        if not isinstance(message, Event) and not message.valid:
             self.counters.counts["not valid, left out"] += 1
         elif _latest_ns(message) >= frames.LATEST_NS:
             self.counters.reject("stamp_beyond_ros", f"{_latest_ns(message)} ns on {keys.key_of(message)}")
@@ -62,7 +62,7 @@ class Ros2Bridge:
         self.counters.counts["marks"] += 1
         return [mark]
 
-    def _converted(self, message: Skeleton | Objects | Event) -> list[Foreign]:
+    def _converted(self, message: Skeleton | Objects | Event | Intent) -> list[Foreign]:
         match message:
             case Skeleton():
                 people = [(agent.agent, self._usable(agent, message.stamp_ns)) for agent in message.agents]
@@ -73,6 +73,8 @@ class Ros2Bridge:
             case Event():
                 typed = self._on(topics.EVENT, conversion.action_event, message)
                 return typed + self._on(topics.EVENT_JSON, conversion.event_json, message)
+            case Intent():
+                return self._on(topics.INTENT, conversion.action_intent, message)
 
     def _on(self, topic: RosTopic, convert: Callable[..., Any], *given: Any) -> list[Foreign]:
         """Return what is converted for a topic; nothing where that is not chosen."""
@@ -90,6 +92,6 @@ class Ros2Bridge:
         return joints
 
 
-def _latest_ns(message: Skeleton | Objects | Event) -> int:
+def _latest_ns(message: Skeleton | Objects | Event | Intent) -> int:
     """Return the latest of the stamps that a message's conversion writes (ns)."""
     return max(message.stamp_ns, message.start_ns, message.end_ns) if isinstance(message, Event) else message.stamp_ns

@@ -1,4 +1,4 @@
-"""Our messages as ROS 2's: skeletons as markers and transforms, objects as detections, events."""
+"""Our messages as ROS 2's: skeletons as markers and transforms, objects as detections, events, intents."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from actum.arrays import Array
-from actum.messages import ActedObject, Event, Objects, Skeleton, TrackedObject
+from actum.messages import ActedObject, Event, Intended, Intent, Objects, Skeleton, TrackedObject
 from actum.skeletons import INDEX, JOINTS
 from actum.standard_body import BONES
 from ros2_bridge.frames import (
@@ -19,7 +19,16 @@ from ros2_bridge.frames import (
     transform,
     vector,
 )
-from ros2_bridge.message_types import ACTION_EVENT, DETECTION_3D_ARRAY, MARKER_ARRAY, STRING, TF_MESSAGE, made
+from ros2_bridge.message_types import (
+    ACTION_EVENT,
+    ACTION_INTENT,
+    DETECTION_3D_ARRAY,
+    INTENDED_CONTACT,
+    MARKER_ARRAY,
+    STRING,
+    TF_MESSAGE,
+    made,
+)
 
 SHOWN_S = 1
 """How long a marker is shown (s) that no other replaces: a person who has left disappears."""
@@ -150,3 +159,30 @@ def _acted_on(item: ActedObject) -> dict[str, Any]:
 def event_json(event: Event, _frame_id: str) -> Any:
     """Return a String: all fields of an event as JSON, in which frames have our names."""
     return made(STRING, data=event.model_dump_json())
+
+
+def action_intent(intent: Intent, frame_id: str) -> Any:
+    """Return an ActionIntent; a text that is not known is empty."""
+    return made(
+        ACTION_INTENT,
+        header=header(intent.stamp_ns, frame_id),
+        agent=intent.agent,
+        intended=[_contact(each) for each in intent.intended],
+        completeness_known=intent.completeness is not None,
+        completeness=intent.completeness or 0.0,
+        segment_id=intent.segment_id or "",
+    )
+
+
+def _contact(intended: Intended) -> Any:
+    return made(
+        INTENDED_CONTACT,
+        action=intended.action or "",
+        object_id=str(intended.object_id),
+        object_name=intended.object_name,
+        hand=intended.hand,
+        probability=intended.probability,
+        contact_s=intended.contact_s,
+        contact_std_s=intended.contact_std_s,
+        place=vector(intended.place_m, "Point"),
+    )

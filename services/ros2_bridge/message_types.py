@@ -15,6 +15,11 @@ MARKER_ARRAY = "visualization_msgs/msg/MarkerArray"
 TF_MESSAGE = "tf2_msgs/msg/TFMessage"
 DETECTION_3D_ARRAY = "vision_msgs/msg/Detection3DArray"
 ACTION_EVENT = "actum_msgs/msg/ActionEvent"
+ACTION_INTENT = "actum_msgs/msg/ActionIntent"
+INTENDED_CONTACT = "actum_msgs/msg/IntendedContact"
+
+OWN = (ACTION_EVENT, INTENDED_CONTACT, ACTION_INTENT)
+"""Our own types, whose definitions are files of the package `actum_msgs`."""
 
 DEFINITIONS = {
     "vision_msgs/msg/ObjectHypothesis": "string class_id\nfloat64 score",
@@ -23,7 +28,7 @@ DEFINITIONS = {
     "vision_msgs/msg/Detection3D": "std_msgs/Header header\nObjectHypothesisWithPose[] results\nBoundingBox3D bbox\n"
     "string id",
     DETECTION_3D_ARRAY: "std_msgs/Header header\nDetection3D[] detections",
-    ACTION_EVENT: (Path(__file__).parent / "actum_msgs/msg/ActionEvent.msg").read_text(encoding="utf-8"),
+    **{name: (Path(__file__).parent / f"{name}.msg").read_text(encoding="utf-8") for name in OWN},
 }
 """What `rosbags` lacks: those of vision_msgs 4, of Humble and later, and our own."""
 

@@ -8,7 +8,7 @@ from pydantic_settings import NoDecode
 
 from actum.settings import ServiceSettings
 
-TopicName = Literal["skeletons", "tf", "objects", "event", "event_json", "mark"]
+TopicName = Literal["skeletons", "tf", "objects", "event", "event_json", "intent", "mark"]
 """What can be published and, of `mark`, subscribed to."""
 ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 """The characters of ROS 2's names, without the slash before them."""

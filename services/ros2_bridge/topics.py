@@ -35,9 +35,10 @@ TF_STATIC = RosTopic("/tf_static", types.TF_MESSAGE, "tf", depth=1, latched=True
 OBJECTS = RosTopic("objects", types.DETECTION_3D_ARRAY, "objects")
 EVENT = RosTopic("event", types.ACTION_EVENT, "event", depth=1, latched=True)
 EVENT_JSON = RosTopic("event_json", types.STRING, "event_json", depth=1, latched=True)
+INTENT = RosTopic("intent", types.ACTION_INTENT, "intent")
 MARK = RosTopic("mark", types.STRING, "mark")
 
-PUBLISHED = (SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON)
+PUBLISHED = (SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON, INTENT)
 SUBSCRIBED = (MARK,)
 
 

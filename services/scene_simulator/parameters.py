@@ -56,7 +56,7 @@ class ObjectParameters(Section):
     """The objects and their possible positions."""
 
     marker_size_m: float
-    place_x_m: Triple
+    place_x_m: tuple[float, ...]
     place_jitter_x_sd_m: float
     place_z_range_m: Pair
     yaw_sd_deg: float
@@ -186,9 +186,8 @@ class Parameters(Section):
         table, objects = self.table, self.objects
         near_z_m, far_z_m = table.near_z_m + away_m, table.far_z_m + away_m
         near, far = objects.place_z_range_m
-        first, middle, last = objects.place_x_m
         placed = {
-            "place_x_m": (first + right_m, middle + right_m, last + right_m),
+            "place_x_m": tuple(x + right_m for x in objects.place_x_m),
             "place_z_range_m": (near + away_m, far + away_m),
         }
         return self.model_copy(

@@ -35,6 +35,7 @@ class WebDashboard:
         keys.ACTION,
         keys.HELD_BACK,
         keys.EVENT,
+        keys.INTENT,
         keys.STATUS,
         keys.TRAINING,
     )

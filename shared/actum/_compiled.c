@@ -1248,22 +1248,220 @@ static PyObject *exceeding(PyObject *module, PyObject *args)
     return released(b, 7);
 }
 
+/* A path: n stamps (ns), which rise, and n positions in metres, (n, 3). */
+typedef struct {
+    const double *ns, *m;
+    Py_ssize_t count;
+} Path;
+
+static double squared_distance(const double *one, const double *other)
+{
+    double x = one[0] - other[0], y = one[1] - other[1], z = one[2] - other[2];
+    return x * x + y * y + z * z;
+}
+
+/* The positions at some stamps, (n, 3): np.interp of each axis, constant beyond both ends. */
+static void interpolate(const Path *path, const double *at_ns, Py_ssize_t n, double *out)
+{
+    Py_ssize_t k = 0;
+    for (Py_ssize_t i = 0; i < n; i++, out += 3) {
+        while (k > 0 && at_ns[i] < path->ns[k])
+            k--;
+        while (k + 1 < path->count && at_ns[i] >= path->ns[k + 1])
+            k++;
+        const double *before = path->m + 3 * k;
+        int is_between = k + 1 < path->count && at_ns[i] > path->ns[k];
+        for (int axis = 0; axis < 3; axis++)
+            out[axis] = !is_between ? before[axis]
+                : (before[axis + 3] - before[axis]) / (path->ns[k + 1] - path->ns[k]) * (at_ns[i] - path->ns[k])
+                    + before[axis];
+    }
+}
+
+PyDoc_STRVAR(interpolated_doc,
+    "interpolated(at_ns, stamps_ns, positions_m, out)\n--\n\n"
+    "Write where a path was at some stamps, (n, 3).");
+static PyObject *interpolated(PyObject *module, PyObject *args)
+{
+    Py_buffer b[4];
+    if (!PyArg_ParseTuple(args, "y*y*y*w*", &b[0], &b[1], &b[2], &b[3]))
+        return NULL;
+    const size_t bytes[4] = {0, sizeof(double), 3 * b[1].len, 3 * b[0].len};
+    Path path = {b[1].buf, b[2].buf, b[1].len / sizeof(double)};
+    if (are_long_enough(b, bytes, 4))
+        interpolate(&path, b[0].buf, b[0].len / sizeof(double), b[3].buf);
+    return released(b, 4);
+}
+
+PyDoc_STRVAR(bounds_doc,
+    "bounds(positions_m, out)\n--\n\n"
+    "Write the least and the greatest coordinates, (2, 3), of positions (n, 3), one at least.");
+static PyObject *bounds(PyObject *module, PyObject *args)
+{
+    Py_buffer b[2];
+    if (!PyArg_ParseTuple(args, "y*w*", &b[0], &b[1]))
+        return NULL;
+    const size_t bytes[2] = {3 * sizeof(double), 6 * sizeof(double)};
+    if (!are_long_enough(b, bytes, 2))
+        return released(b, 2);
+    const double *positions = b[0].buf;
+    double *least = b[1].buf, *greatest = least + 3;
+    for (Py_ssize_t i = 0; i < b[0].len / (Py_ssize_t)sizeof(double) / 3 * 3; i++) {
+        least[i % 3] = i < 3 || positions[i] < least[i % 3] ? positions[i] : least[i % 3];
+        greatest[i % 3] = i < 3 || positions[i] > greatest[i % 3] ? positions[i] : greatest[i % 3];
+    }
+    return released(b, 2);
+}
+
+/* Average n positions, (n, 3), over some time around each, less near both ends; `sums` is room for (n + 1, 3). */
+static void smooth(const Path *path, double within_ns, double *sums, double *out)
+{
+    Py_ssize_t first = 0, beyond = 0;
+    memset(sums, 0, 3 * sizeof *sums);
+    for (Py_ssize_t i = 0; i < 3 * path->count; i++)
+        sums[i + 3] = sums[i] + path->m[i];
+    for (Py_ssize_t i = 0; i < path->count; i++) {
+        while (path->ns[first] < path->ns[i] - within_ns)
+            first++;
+        while (beyond < path->count && path->ns[beyond] <= path->ns[i] + within_ns)
+            beyond++;
+        Py_ssize_t half = i - first < beyond - 1 - i ? i - first : beyond - 1 - i;
+        for (int axis = 0; axis < 3; axis++)
+            out[3 * i + axis]
+                = (sums[3 * (i + half + 1) + axis] - sums[3 * (i - half) + axis]) / (double)(2 * half + 1);
+    }
+}
+
+PyDoc_STRVAR(smoothed_hand_doc,
+    "smoothed_hand(stamps_ns, hands_m, hand, within_ns, out_ns, out_m) -> count\n--\n\n"
+    "Write the stamps (n,) at which one of a person's hands, (n, 2, 3), is known, and its smooth positions, (n, 3).");
+static PyObject *smoothed_hand(PyObject *module, PyObject *args)
+{
+    Py_buffer b[4];
+    int hand;
+    double within_ns;
+    if (!PyArg_ParseTuple(args, "y*y*pdw*w*", &b[0], &b[1], &hand, &within_ns, &b[2], &b[3]))
+        return NULL;
+    const size_t all = b[0].len, bytes[4] = {0, 6 * all, all, 3 * all};
+    const double *stamps_ns = b[0].buf, *hands_m = b[1].buf;
+    double *known_ns = b[2].buf, *known_m = PyMem_Malloc((6 * all + 3 * sizeof(double)));
+    Path known = {known_ns, known_m, 0};
+    if (known_m == NULL)
+        PyErr_NoMemory();
+    else if (are_long_enough(b, bytes, 4)) {
+        for (size_t i = 0; i < all / sizeof(double); i++)
+            if (isfinite(hands_m[6 * i + 3 * hand])) {
+                known_ns[known.count] = stamps_ns[i];
+                memcpy(known_m + 3 * known.count++, hands_m + 6 * i + 3 * hand, 3 * sizeof(double));
+            }
+        smooth(&known, within_ns, known_m + 3 * known.count, b[3].buf);
+    }
+    PyMem_Free(known_m);
+    Py_XDECREF(released(b, 4));
+    return PyErr_Occurred() ? NULL : PyLong_FromSsize_t(known.count);
+}
+
+/* The last of the positions `first` to `now` that is about as far from the one now as any of them; -1 where none is
+   `moved_m` away. */
+static Py_ssize_t furthest_away(const double *positions, Py_ssize_t first, Py_ssize_t now, double share, double moved_m)
+{
+    double most2 = 0.0;
+    for (Py_ssize_t k = first; k < now; k++) {
+        double away2 = squared_distance(positions + 3 * k, positions + 3 * now);
+        most2 = away2 > most2 ? away2 : most2;
+    }
+    double least = share * sqrt(most2);
+    if (sqrt(most2) < moved_m)
+        return -1;
+    Py_ssize_t last = now;
+    while (last > first && sqrt(squared_distance(positions + 3 * last, positions + 3 * now)) < least)
+        last--;
+    return last;
+}
+
+/* What a motion is compared by: times (ns), distances (m) and shares, as `comotion` is given them. */
+typedef struct {
+    double step_ns, recent_ns, share, reach_m, moved_m, unexplained;
+} Limits;
+
+/* Mark at each instant of a hand whether an object is near, in motion, and moved by the hand, (3, n). */
+static void mark(const Path *hand, const double *object, const double *apart, const Limits *limits, char *near)
+{
+    Py_ssize_t n = hand->count, first = 0, recent = 0;
+    char *in_motion = near + n, *with_hand = in_motion + n;
+    while (recent < n && hand->ns[recent] < limits->recent_ns)
+        recent++;
+    for (Py_ssize_t i = 0; i < n; i++) {
+        near[i] = apart[i] <= limits->reach_m;
+        in_motion[i] = with_hand[i] = 0;
+        while (hand->ns[first] < hand->ns[i] - limits->step_ns)
+            first++;
+        Py_ssize_t since = near[i] ? furthest_away(object, first, i, limits->share, limits->moved_m) : -1;
+        if (since < 0)
+            continue;
+        if (since < recent && recent <= i)
+            since = recent;
+        double step[3], hand_step[3];
+        for (int axis = 0; axis < 3; axis++) {
+            step[axis] = object[3 * i + axis] - object[3 * since + axis];
+            hand_step[axis] = hand->m[3 * i + axis] - hand->m[3 * since + axis];
+        }
+        double origin[3] = {0}, moved2 = squared_distance(step, origin);
+        in_motion[i] = sqrt(moved2) >= limits->moved_m;
+        with_hand[i] = in_motion[i] && squared_distance(step, hand_step) < limits->unexplained * moved2;
+    }
+}
+
+PyDoc_STRVAR(comotion_doc,
+    "comotion(hand_ns, hand_m, object_ns, object_m, step_ns, recent_ns, share, reach_m, moved_m, unexplained, out, marks)\n"
+    "--\n\n"
+    "Write at each of a hand's n instants where an object is, (n, 3), the vector to it from the hand, (n, 3), its length,\n"
+    "(n,), and the object's path since the previous instant, (n,); and mark whether the object is near, in motion, and\n"
+    "moved by the hand, (3, n).");
+static PyObject *comotion(PyObject *module, PyObject *args)
+{
+    Py_buffer b[6];
+    Limits limits;
+    if (!PyArg_ParseTuple(args, "y*y*y*y*ddddddw*w*", &b[0], &b[1], &b[2], &b[3], &limits.step_ns, &limits.recent_ns,
+                          &limits.share, &limits.reach_m, &limits.moved_m, &limits.unexplained, &b[4], &b[5]))
+        return NULL;
+    const size_t all = b[0].len, n = all / sizeof(double);
+    const size_t bytes[6] = {0, 3 * all, sizeof(double), 3 * b[2].len, 8 * all, 3 * n};
+    Path hand = {b[0].buf, b[1].buf, n}, object = {b[2].buf, b[3].buf, b[2].len / sizeof(double)};
+    if (!are_long_enough(b, bytes, 6))
+        return released(b, 6);
+    double *positions = b[4].buf, *offsets = positions + 3 * n, *apart = offsets + 3 * n, *moved = apart + n;
+    interpolate(&object, hand.ns, n, positions);
+    for (size_t i = 0; i < 3 * n; i++)
+        offsets[i] = positions[i] - hand.m[i];
+    for (size_t i = 0; i < n; i++) {
+        apart[i] = length3(offsets + 3 * i);
+        moved[i] = i ? sqrt(squared_distance(positions + 3 * i, positions + 3 * i - 3)) : 0.0;
+    }
+    mark(&hand, positions, apart, &limits, b[5].buf);
+    return released(b, 6);
+}
+
 static PyMethodDef methods[] = {
     {"adapted", adapted, METH_VARARGS, adapted_doc},
     {"added", added, METH_VARARGS, added_doc},
     {"added_channel", added_channel, METH_VARARGS, added_channel_doc},
     {"body", body, METH_VARARGS, body_doc},
+    {"bounds", bounds, METH_VARARGS, bounds_doc},
     {"centred", centred, METH_VARARGS, centred_doc},
+    {"comotion", comotion, METH_VARARGS, comotion_doc},
     {"contrasted", contrasted, METH_VARARGS, contrasted_doc},
     {"decoded", decoded, METH_VARARGS, decoded_doc},
     {"exceeding", exceeding, METH_VARARGS, exceeding_doc},
     {"exponents", exponents, METH_VARARGS, exponents_doc},
+    {"interpolated", interpolated, METH_VARARGS, interpolated_doc},
     {"left_arm_acts", left_arm_acts, METH_VARARGS, left_arm_acts_doc},
     {"pooled", pooled, METH_VARARGS, pooled_doc},
     {"pooled_windows", pooled_windows, METH_VARARGS, pooled_windows_doc},
     {"posture", posture, METH_VARARGS, posture_doc},
     {"running_sums", running_sums, METH_VARARGS, running_sums_doc},
     {"smoothed", smoothed, METH_VARARGS, smoothed_doc},
+    {"smoothed_hand", smoothed_hand, METH_VARARGS, smoothed_hand_doc},
     {"spreads", spreads, METH_VARARGS, spreads_doc},
     {"usable", usable, METH_VARARGS, usable_doc},
     {NULL, NULL, 0, NULL},

@@ -29,12 +29,18 @@ class DegenerateError(ValueError):
 
 
 def is_rigid(transform: Array, furthest_m: float) -> bool:
-    """Tell whether a matrix (4, 4) is a rigid transform that shifts by at most `furthest_m` along each axis."""
-    rotation, shift_m = transform[:3, :3], transform[:3, 3]
-    if not np.isfinite(transform).all() or np.abs(rotation).max() > 2 or np.abs(shift_m).max() > furthest_m:
+    """Tell whether a matrix (4, 4) is a rigid transform that shifts by at most `furthest_m` along each axis.
+
+    With plain numbers, since every posture is asked: NumPy takes several times as long.
+    """
+    *rows, last = transform.tolist()
+    x, y, z = (row[:3] for row in rows)
+    if last != [0, 0, 0, 1] or not all(abs(row[3]) <= furthest_m for row in rows):
         return False
-    orthogonal = (np.abs(rotation @ rotation.T - np.eye(3)) <= RIGID_TOLERANCE).all()
-    return bool(orthogonal and np.linalg.det(rotation) > 0 and transform[3].tolist() == [0, 0, 0, 1])
+    if not all(abs(each) <= 2 for each in (*x, *y, *z)):
+        return False
+    products = (_dot(x, x) - 1, _dot(y, y) - 1, _dot(z, z) - 1, _dot(x, y), _dot(y, z), _dot(z, x))
+    return max(map(abs, products)) <= RIGID_TOLERANCE and _dot(cross(x, y), z) > 0
 
 
 def invert(b_from_a: Array) -> Array:
@@ -141,8 +147,18 @@ def _axes_and_origin(
     along = terms[0] + terms[1] + terms[2]
     origin = [r + along * x for r, x in zip(right_hip, left, strict=True)]
     up = _unit([t - o for t, o in zip(torso, origin, strict=True)], "the torso lies on the line through both hips")
-    (x, y, z), (u, v, w) = left, up
-    return [left, up, [y * w - z * v, z * u - x * w, x * v - y * u], origin]
+    return [left, up, cross(left, up), origin]
+
+
+def cross(one: Sequence[float], other: Sequence[float]) -> Numbers:
+    """Return the cross product of two vectors of three plain numbers, as `np.cross` computes it."""
+    (x, y, z), (u, v, w) = one, other
+    return [y * w - z * v, z * u - x * w, x * v - y * u]
+
+
+def _dot(one: Sequence[float], other: Sequence[float]) -> float:
+    (x, y, z), (u, v, w) = one, other
+    return x * u + y * v + z * w
 
 
 def upright(joints: Array, left_x: float, left_z: float) -> Array:

@@ -65,6 +65,8 @@ HELD_BACK = Topic("held_back/{}", m.HeldBack, cache=64)
 """What the classifier found and did not publish as an action."""
 EVENT = Topic("event/{}", m.Event, cache=64)
 """Events, one for each segment: verb, object and result."""
+INTENT = Topic("intent/{}", m.Intent)
+"""What people are about to touch. None is kept: an older one is outdated."""
 STATUS = Topic("status/{}", m.Status, priority="background")
 """A service's health, once a second."""
 INFO = Topic("info/{}", m.Info)
@@ -84,6 +86,7 @@ TOPICS: tuple[Topic, ...] = (
     ACTION,
     HELD_BACK,
     EVENT,
+    INTENT,
     STATUS,
     INFO,
     TRUTH,
@@ -91,7 +94,8 @@ TOPICS: tuple[Topic, ...] = (
 )
 _BY_PREFIX = {topic.leaf.removesuffix("/{}"): topic for topic in TOPICS}
 """Topics by their leaf without `/{}`, such as `posture`."""
-_NAMED_BY = {POSTURE: "agent", ACTION: "agent", HELD_BACK: "agent", EVENT: "agent", STATUS: "service", INFO: "service"}
+_BY_AGENT, _BY_SERVICE = (POSTURE, ACTION, HELD_BACK, EVENT, INTENT), (STATUS, INFO)
+_NAMED_BY = {**dict.fromkeys(_BY_AGENT, "agent"), **dict.fromkeys(_BY_SERVICE, "service")}
 """The field that gives the last chunk of the key, for the topics whose keys have one."""
 _PLACES = {topic.message.SCHEMA: (topic, _NAMED_BY.get(topic)) for topic in TOPICS if topic is not DEPTH}
 """Topics, and that field, by their messages' schema; for images the topic of colour."""

@@ -52,6 +52,11 @@ class StreamBuffer(Generic[S]):
         """Stamp of the newest sample, -1 where there is none."""
         return self._samples[-1].stamp_ns if self._samples else -1
 
+    @property
+    def newest(self) -> S | None:
+        """The newest sample; None where there is none."""
+        return self._samples[-1] if self._samples else None
+
     def append(self, sample: S) -> None:
         """Add the next sample, and forget the samples that are too old."""
         self._samples.append(sample)

@@ -32,7 +32,7 @@ def test_more_rows_may_be_asked_to_be_kept_than_there_are() -> None:
 def test_an_object_that_appears_late_keeps_all_its_positions() -> None:
     buffer = ObjectsBuffer()
     for number in range(1000):
-        positions_m = {1: np.zeros(3)} | ({2: np.full(3, number)} if number >= 100 else {})
+        positions_m = {1: [0.0] * 3} | ({2: [float(number)] * 3} if number >= 100 else {})
         names = dict.fromkeys(positions_m, "cup")
         buffer.append(ObjectsSample(number * FRAME_NS, "", positions_m, names, frozenset(), {}))
         end_ns = number * FRAME_NS

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from action_fusion.choice.pointing import fingertip_m, pointing_angle, pointing_side
+from action_fusion.choice.pointing import fingertip_m, pointing_angles, pointing_side
 from action_fusion.tracks.actors import Actor
 from actum.skeletons import INDEX
 
@@ -23,18 +23,18 @@ def test_the_fingertip_is_a_decimetre_beyond_the_hand_along_the_forearm() -> Non
 
 def test_the_angle_is_between_the_lines_from_the_head() -> None:
     head, tip, thing = np.zeros((3, 3)), np.tile([0.0, 0.0, 0.7], (3, 1)), np.tile([0.0, 2.0, 2.0], (3, 1))
-    assert pointing_angle(thing, tip, head) == pytest.approx(np.pi / 4)
+    assert pointing_angles(thing[None], tip, head) == [pytest.approx(np.pi / 4)]
 
 
 def test_only_the_last_third_of_the_known_frames_counts() -> None:
     head, thing = np.zeros((10, 3)), np.tile([0.0, 0.0, 2.0], (10, 1))
     tip = np.array([[0.0, 1.0, 0.0]] * 6 + [[0.0, 0.0, 1.0]] * 3 + [[np.nan] * 3])
-    assert pointing_angle(thing, tip, head) == pytest.approx(0.0)
+    assert pointing_angles(thing[None], tip, head) == [pytest.approx(0.0)]
 
 
 def test_an_arm_that_is_never_known_points_nowhere() -> None:
     unknown = np.full((4, 3), np.nan)
-    assert pointing_angle(np.ones((4, 3)), unknown, np.zeros((4, 3))) == np.inf
+    assert pointing_angles(np.ones((1, 4, 3)), unknown, np.zeros((4, 3))) == [np.inf]
 
 
 def test_the_hand_that_points_is_the_one_furthest_from_the_body() -> None:

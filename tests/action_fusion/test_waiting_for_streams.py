@@ -51,7 +51,8 @@ SEGMENTS = [
 
 def events_after(arrivals: list[tuple[int, Message]]) -> list[dict[str, object]]:
     arrivals.sort(key=lambda arrival: arrival[0])
-    events = without_seq(list(replay(ActionFusion(Settings()), arrivals, settle_ns=5 * SECOND_NS)))
+    put = replay(ActionFusion(Settings()), arrivals, settle_ns=5 * SECOND_NS)
+    events = without_seq([each for each in put if isinstance(each, Event)])
     return sorted(events, key=lambda event: str(event["segment_id"]))
 
 

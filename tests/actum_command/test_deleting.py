@@ -7,12 +7,13 @@ from pathlib import Path
 import pytest
 
 from actum import keys
-from actum.messages import Agent, Skeleton, segment_marks
+from actum.messages import Agent, Intent, Skeleton, segment_marks
 from actum.recording import Recording
 from actum_examples.stored_changes import mirror_image
 from actum_examples.take import MIRRORED
 from actum_model_trainer.samples import samples_from
 from command_lines import printed, refused, written
+from empty_messages import contact, intent
 from people import FRAME_NS, reaching, skeleton
 from teaching import Teacher
 
@@ -60,6 +61,15 @@ def test_a_deleted_example_takes_along_the_frames_that_no_other_needs(path: Path
     (stream,) = [each for each in samples_from([Recording(path)]).streams if each.agent == 1]
     frames = {(int(stamp_ns) - FIRST_NS) // FRAME_NS for stamp_ns in stream.stamps_ns}
     assert not frames & set(range(5, 20)), "nothing of it is learnt as background"
+
+
+def test_a_deleted_example_takes_along_the_intents_that_name_it(tmp_path: Path) -> None:
+    named = [intent(FIRST_NS + i, contact(0.9), segment_id=name) for i, name in enumerate(("one", "two", None))]
+    marks = [segment_marks(FIRST_NS, FIRST_NS + FRAME_NS, "kinect0", name, "wave", 1) for name in ("one", "two")]
+    path = written(tmp_path / "take-0001.mcap", *bodies(), *named, *chain(*marks))
+    printed("label", "delete", path, "one")
+    left = [each.segment_id for each in Recording(path).messages((keys.INTENT,)) if isinstance(each, Intent)]
+    assert left == ["two", None]
 
 
 def mirrored_frames(path: Path) -> set[int]:

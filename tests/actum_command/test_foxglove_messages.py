@@ -15,7 +15,7 @@ pytest.importorskip("mcap_protobuf", reason="mcap-protobuf-support is not instal
 
 from mcap_protobuf.decoder import DecoderFactory
 
-from actum.messages import Action, Event, Message, Segment, Tensor, Truth
+from actum.messages import Action, Event, Intent, Message, Segment, Tensor, Truth
 from actum.skeletons import INDEX
 from actum.standard_body import BONES
 from actum_command.viewers.foxglove_sinks import foxglove_schema, written
@@ -189,7 +189,7 @@ def foxglove_reads(schema: dict[str, Any]) -> bool:
     return False
 
 
-@pytest.mark.parametrize("kind", [Segment, Action, Event, Truth])
+@pytest.mark.parametrize("kind", [Segment, Action, Event, Intent, Truth])
 def test_foxglove_reads_the_schema_and_it_has_every_field(kind: type[Message]) -> None:
     schema = foxglove_schema(kind)
     assert foxglove_reads(schema)

@@ -7,14 +7,14 @@ from mcap.reader import make_reader
 
 from actum import keys
 from actum.limits import MAX_SKEW_NS
-from actum.messages import AUTO, MANUAL, REPLAY, SIMULATOR, Image, Message, Segment, Skeleton, Truth
+from actum.messages import AUTO, MANUAL, REPLAY, SIMULATOR, Image, Intent, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS, SETTLE_NS, Counters
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_command.commands import segment_commands
 from actum_command.scene_marks import mark_of
 from actum_examples.stream_recorder import IMAGES, STREAMS, StreamRecorder
-from empty_messages import action, image, mark, skeleton, status
+from empty_messages import action, contact, image, intent, mark, skeleton, status
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator, labelled_stream
 
@@ -129,6 +129,10 @@ def test_the_label_is_given_to_start_marks_that_have_none(take: Take) -> None:
 def test_images_are_stored_only_if_asked_for(take: Take) -> None:
     assert [type(m) for m in take.record(skeleton(1), image(1))] == [Skeleton]
     assert [type(m) for m in take.record(skeleton(1), image(1), topics=STREAMS | IMAGES)] == [Skeleton, Image]
+
+
+def test_what_people_are_about_to_touch_is_stored(take: Take) -> None:
+    assert [type(m) for m in take.record(skeleton(1), intent(1, contact(0.9)), intent(2))] == [Skeleton, Intent, Intent]
 
 
 def test_marks_are_resolved_by_streams_that_are_not_stored(take: Take) -> None:

@@ -87,6 +87,33 @@ def test_an_event_appears_large_in_the_timeline_and_with_what_spoke_for_it(scene
     assert page.locator("#neurons .winner .name").text_content() == "push"
 
 
+def test_what_is_about_to_be_touched_is_grey_until_it_is_certain_and_goes_with_the_event(
+    scene: Scene, open_page: Open
+) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    line = page.locator("#now .ahead")
+    assert not line.is_visible()
+    scene.reach(0.6, 0.42)
+    page.locator("#now .ahead:not(.certain)", has_text="→ cup, in 0.4 s").wait_for()
+    scene.reach(0.93, 0.11)
+    page.locator("#now .ahead.certain", has_text="→ cup, in 0.1 s").wait_for()
+    scene.answer("one", "push object 1 cup")
+    line.wait_for(state="hidden")
+    scene.go_on(0.5)
+    assert not line.is_visible()
+
+
+@pytest.mark.parametrize("silently", [False, True], ids=["with an empty intent", "with the person lost from view"])
+def test_what_is_about_to_be_touched_goes_when_the_reach_ends(silently: bool, scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    wait_for_state(page, "live")
+    scene.reach(0.93, 0.2)
+    page.locator("#now .ahead").wait_for()
+    scene.end_reach(silently)
+    page.locator("#now .ahead").wait_for(state="hidden")
+
+
 def test_labels_with_markup_are_shown_as_they_are(scene: Scene, open_page: Open) -> None:
     page = open_page(scene.page.address)
     wait_for_state(page, "live")

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from typing import TypeVar
 
@@ -11,8 +12,13 @@ from benchmarks.rig.numpy_alone import numpy_alone
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from action_fusion.intake.buffers import Hands
+from action_fusion.tracks.comotion import Comotion, comotion
+from action_fusion.tracks.hand_tracks import HandTrack, known_smoothed
+from action_fusion.tracks.object_tracks import ObjectTrack
+from action_fusion.tracks.paths import bounds_m, interpolated
 from actum import core
-from actum.arrays import joints_to_array
+from actum.arrays import Array, Mask, joints_to_array
 from actum.core import steps
 from actum.geometry import DegenerateError
 from actum.messages import Joint, Posture
@@ -218,6 +224,44 @@ def test_running_sums_are_the_same_to_the_bit(frames: int, seed: int) -> None:
     np.testing.assert_array_equal(*both(lambda: running_sums(activities.astype(np.float64))))
 
 
+def wandering(rng: np.random.Generator, count: int) -> tuple[Array, Array]:
+    """Stamps (n,) at uneven intervals, most of them before a segment's start, and positions (n, 3) that wander."""
+    stamps_ns = np.cumsum(rng.integers(FRAME_NS // 2, 2 * FRAME_NS, count)) - 2.0 * SECOND_NS
+    return stamps_ns, np.cumsum(rng.normal(0.0, 0.02, (count, 3)), axis=0)
+
+
+@given(st.integers(1, 200), st.integers(1, 200), st.booleans(), st.sampled_from([0.03, 0.3]), st.integers(0, 2**32 - 1))
+def test_a_hand_and_an_object_are_compared_alike(
+    instants: int, sightings: int, in_hand: bool, moved_m: float, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    hand, seen = HandTrack("right", *wandering(rng, instants)), np.ones(sightings, np.bool_)
+    stamps_ns, wandering_m = wandering(rng, sightings)
+    track = ObjectTrack(1, "cup", stamps_ns, 0.2 * wandering_m + (hand.at(stamps_ns) if in_hand else 0.0), seen)
+    compiled, plain = both(lambda: comotion(hand, track, 0.25, moved_m))
+    for field in fields(Comotion):
+        np.testing.assert_array_equal(getattr(compiled, field.name), getattr(plain, field.name))
+
+
+@given(st.integers(1, 50), st.integers(0, 50), st.integers(0, 2**32 - 1))
+def test_paths_are_the_same_to_the_bit_at_stamps_in_any_order(known: int, asked: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    stamps_ns, positions_m = wandering(rng, known)
+    at_ns = rng.choice(np.concatenate([stamps_ns, rng.uniform(-3e9, 3e9, 50)]), asked)
+    np.testing.assert_array_equal(*both(lambda: interpolated(at_ns, stamps_ns, positions_m)))
+    np.testing.assert_array_equal(*both(lambda: bounds_m(positions_m)))
+
+
+@given(st.integers(0, 100), st.sampled_from([0.0, 0.3, 1.0]), st.integers(0, 1), st.integers(0, 2**32 - 1))
+def test_hands_are_smoothed_alike_at_the_same_stamps(frames: int, lacking: float, number: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    (stamps_ns, right_m), (_, left_m) = wandering(rng, frames), wandering(rng, frames)
+    hands_m = np.stack([right_m, left_m], axis=1)
+    hands_m[rng.random((frames, 2)) < lacking] = np.nan
+    for compiled, plain in zip(*both(lambda: known_smoothed(Hands(stamps_ns, hands_m), number)), strict=True):
+        np.testing.assert_array_equal(compiled, plain)
+
+
 @pytest.mark.parametrize("spoilt", ["hips", "bone", "far"])
 def test_what_cannot_be_used_is_refused_alike(spoilt: str) -> None:
     joints = STANDING.copy()
@@ -241,6 +285,11 @@ def test_joints_that_coincide_are_refused_by_both() -> None:
     assert known_body(joints.tolist(), 10.0, 2.0) is None
     with pytest.raises(DegenerateError):
         body_of(joints)
+
+
+def compare(hand_m: Array, object_m: Array, numbers: Array, marks: Mask) -> None:
+    """Compare a hand of nine instants with an object of two sightings."""
+    steps.comotion(np.zeros(9), hand_m, np.zeros(2), object_m, 1.0, 0.0, 0.8, 0.25, 0.03, 0.5, numbers, marks)
 
 
 ZEROS = np.zeros(400)
@@ -274,6 +323,16 @@ def pooled_by(spans: list[list[int]], frames: int = 2) -> None:
         lambda: steps.added_channel(np.zeros((2, 3), np.float32), 3, 3, 1, 1, 1, np.zeros((3, 8), np.uint32), 8, 0, 6),
         lambda: steps.adapted(np.ones((2, 3)), np.ones((4, 3)), np.zeros(4, np.int64), np.array([4]), 0.1),
         lambda: steps.adapted(np.ones((2, 3)), np.ones((4, 4)), np.zeros(4, np.int64), np.array([0]), 0.1),
+        lambda: steps.bounds(np.empty((0, 3)), np.empty((2, 3))),
+        lambda: steps.interpolated(np.zeros(9), np.zeros(2), np.zeros((2, 3)), np.empty((8, 3))),
+        lambda: steps.interpolated(np.zeros(9), np.zeros(0), np.zeros((2, 3)), np.empty((9, 3))),
+        lambda: steps.interpolated(np.zeros(9), np.zeros(3), np.zeros((2, 3)), np.empty((9, 3))),
+        lambda: steps.smoothed_hand(np.zeros(9), np.zeros((8, 2, 3)), 0, 1.0, np.empty(9), np.empty((9, 3))),
+        lambda: steps.smoothed_hand(np.zeros(9), np.zeros((9, 2, 3)), 0, 1.0, np.empty(9), np.empty((8, 3))),
+        lambda: compare(np.zeros((8, 3)), np.zeros((2, 3)), np.empty(72), np.empty(27, np.bool_)),
+        lambda: compare(np.zeros((9, 3)), np.zeros((1, 3)), np.empty(72), np.empty(27, np.bool_)),
+        lambda: compare(np.zeros((9, 3)), np.zeros((2, 3)), np.empty(71), np.empty(27, np.bool_)),
+        lambda: compare(np.zeros((9, 3)), np.zeros((2, 3)), np.empty(72), np.empty(26, np.bool_)),
         lambda: steps.pooled_windows([], [0], [False], ZEROS, b"", b"", 1.0, np.empty(3, np.float32)),
     ],
 )

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum import codec, keys, messages
-from actum.messages import HeldBack, Info, Message, Status, Training, Truth
+from actum.messages import HeldBack, Info, Intent, Message, Status, Training, Truth
 from actum.node import SECOND_NS, TICK_NS, Tick
 from node_cases import CASES, Case, every_node_finding_too
 from wire import Wire, packed
@@ -22,6 +22,7 @@ STRANGERS: tuple[Message, ...] = (
         stamp_ns=1, sensor="kinect0", agent=1, start_ns=0, end_ns=1, action="lift", confidence=0.5, familiarity=0.1,
         why="unknown", sentence="like lift, but not like enough: 0.10",
     ),
+    Intent(stamp_ns=1, sensor="kinect0", agent=1, intended=[]),
     Info.model_validate(HEALTH | {"version": "1", "schemas": [], "joint_names": []}),
     Status.model_validate(
         HEALTH

@@ -1,4 +1,4 @@
-"""What ROS 2 gets of skeletons, objects and events, read by code that shares nothing with what wrote it."""
+"""What ROS 2 gets of skeletons, objects, events and intents, read by code that shares nothing with what wrote it."""
 
 import json
 from typing import Any
@@ -11,7 +11,18 @@ from conftest import NEEDS_ROS2_EXTRA
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
 from actum.bridge import Foreign
-from actum.messages import Event, Message, Motion, ObjectPose, Objects, Segment, Skeleton, TrackedObject
+from actum.messages import (
+    Event,
+    Intended,
+    Intent,
+    Message,
+    Motion,
+    ObjectPose,
+    Objects,
+    Segment,
+    Skeleton,
+    TrackedObject,
+)
 from actum.node import SECOND_NS, Tick
 from actum.skeletons import INDEX, JOINTS
 from actum.standard_body import BONES
@@ -28,6 +39,17 @@ TYPES = {topic.name: topic.type for topic in PUBLISHED}
 CUP = TrackedObject(
     id=3, name="cup", position_m=[0.1, 0.2, 1.5], quaternion_xyzw=[0.5, -0.5, 0.5, 0.5], confidence=0.75, seen=True
 )
+
+
+REACHING = Intent(
+    stamp_ns=AT_NS, sensor="kinect0", agent=2, completeness=0.25, segment_id="auto-1",
+    intended=[
+        Intended(
+            action="lift", object_id=3, object_name="cup", hand="left", probability=0.75, contact_s=0.5,
+            contact_std_s=0.125, place_m=[0.1, 0.2, 1.5],
+        ),
+    ],
+)  # fmt: skip
 
 
 def put(*messages: Message | Tick, **settings: Any) -> dict[str, Any]:
@@ -185,23 +207,44 @@ def test_as_json_an_event_has_all_its_fields() -> None:
     assert json.loads(put(acted)["event_json"].data)["segment_id"] == "lift-1"
 
 
+def test_an_intent_says_who_is_about_to_touch_what_where_and_when() -> None:
+    typed = put(REACHING)["intent"]
+    [contact] = typed.intended
+    assert_header(typed.header)
+    assert (typed.agent, typed.segment_id, typed.completeness_known, typed.completeness) == (2, "auto-1", True, 0.25)
+    assert (contact.action, contact.object_id, contact.object_name, contact.hand) == ("lift", "3", "cup", "left")
+    assert (contact.probability, contact.contact_s, contact.contact_std_s) == (0.75, 0.5, 0.125)
+    assert xyz(contact.place) == [0.1, 0.2, 1.5]
+
+
+def test_an_intent_that_is_over_is_empty_and_what_is_not_known_of_one_is_too() -> None:
+    over = put(REACHING.model_copy(update={"intended": [], "segment_id": None, "completeness": None}))["intent"]
+    assert (over.intended, over.segment_id, over.completeness_known) == ([], "", False)
+    unnamed = REACHING.intended[0].model_copy(update={"action": None})
+    [contact] = put(REACHING.model_copy(update={"intended": [unnamed]}))["intent"].intended
+    assert contact.action == ""
+
+
 @pytest.mark.parametrize(
     ("chosen", "topics"),
-    [("event", {"event"}), ("tf,objects", {"/tf", "/tf_static", "objects"}), ("mark", set())],
+    [("event", {"event"}), ("intent", {"intent"}), ("tf,objects", {"/tf", "/tf_static", "objects"}), ("mark", set())],
 )
 def test_only_what_is_chosen_is_put(chosen, topics) -> None:
     objects = Objects(stamp_ns=AT_NS, sensor="kinect0", objects=[CUP])
-    assert set(put(Tick(1), skeleton(AT_NS, STANDING), objects, told(), ros_topics=chosen)) == topics
+    assert set(put(Tick(1), skeleton(AT_NS, STANDING), objects, told(), REACHING, ros_topics=chosen)) == topics
 
 
 def test_what_is_not_valid_is_left_out_and_counted() -> None:
     bridge = Ros2Bridge(Settings())
-    invalid = skeleton(AT_NS, STANDING).model_copy(update={"valid": False, "reason": "dark"})
-    assert list(bridge.handle(invalid)) == []
-    assert bridge.counters.counts.total() == 1
+    for number, message in enumerate((skeleton(AT_NS, STANDING), REACHING), 1):
+        assert list(bridge.handle(message.model_copy(update={"valid": False, "reason": "dark"}))) == []
+        assert bridge.counters.counts.total() == number
 
 
-@pytest.mark.parametrize("message", [skeleton(2**61, STANDING), told(end_ns=2**31 * SECOND_NS)])
+@pytest.mark.parametrize(
+    "message",
+    [skeleton(2**61, STANDING), told(end_ns=2**31 * SECOND_NS), REACHING.model_copy(update={"stamp_ns": 2**61})],
+)
 def test_a_stamp_that_ros_has_no_number_for_is_refused(message) -> None:
     bridge = Ros2Bridge(Settings())
     assert list(bridge.handle(message)) == []
@@ -228,7 +271,7 @@ def test_what_is_put_can_be_put_by_any_sender_of_ours() -> None:
 
 
 def test_messages_of_other_kinds_are_nothing_to_it() -> None:
-    assert {topic.message for topic in Ros2Bridge.inputs} == {Skeleton, Objects, Event}
+    assert {topic.message for topic in Ros2Bridge.inputs} == {Skeleton, Objects, Event, Intent}
     start = Segment(sensor="kinect0", kind="start", segment_id="a")
     assert start.stamp_ns is None
     assert put(start) == {}
@@ -267,3 +310,15 @@ def test_every_field_of_an_event_is_carried_or_left_to_the_json() -> None:
 def test_every_field_of_the_message_carries_one_of_an_event() -> None:
     fields = {name for name in vars(types.made(types.ACTION_EVENT)) if not name.startswith("_")}
     assert set.union(*CARRIED.values()) == fields
+
+
+CONTACT_RENAMED = {"place_m": "place"}
+"""The fields of IntendedContact.msg that are called otherwise than those of a contact; units stand in ROS's types."""
+
+
+def test_every_field_of_a_contact_is_carried_and_every_one_of_an_intent_but_how_it_travelled() -> None:
+    contact = {name for name in vars(types.made(types.INTENDED_CONTACT)) if not name.startswith("_")}
+    assert contact == {CONTACT_RENAMED.get(name, name) for name in Intended.model_fields}
+    intent = {name for name in vars(types.made(types.ACTION_INTENT)) if not name.startswith("_")}
+    left_out = {"stamp_ns", "sensor", "seq", "valid", "reason", "session_id"}
+    assert intent == {*Intent.model_fields} - left_out | {"header", "completeness_known"}

@@ -1,6 +1,8 @@
 """What is declared is what rmw_zenoh declares: keys, tokens and attachments, letter by letter."""
 
+import re
 import struct
+from pathlib import Path
 
 import pytest
 from pydantic import ValidationError
@@ -10,7 +12,8 @@ from conftest import NEEDS_ROS2_EXTRA
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
 from actum.settings import complaint
-from ros2_bridge.message_types import type_hash
+from ros2_bridge import message_types
+from ros2_bridge.message_types import OWN, type_hash
 from ros2_bridge.settings import Settings
 from ros2_bridge.topics import PUBLISHED, node
 
@@ -28,17 +31,27 @@ def test_types_have_the_hashes_by_which_ros_knows_them() -> None:
     assert {name: type_hash(name) for name in HASHES} == HASHES
 
 
-def test_the_hash_of_our_own_type_stays_as_long_as_its_definition() -> None:
-    assert type_hash("actum_msgs/msg/ActionEvent") == (
-        "RIHS01_bca8cd7bdc88f3ddf620f9504d7d3bf9c418dde90fbe9ac81089fb2ffe8211a1"
-    )
+OWN_HASHES = {
+    "actum_msgs/msg/ActionEvent": "RIHS01_bca8cd7bdc88f3ddf620f9504d7d3bf9c418dde90fbe9ac81089fb2ffe8211a1",
+    "actum_msgs/msg/ActionIntent": "RIHS01_adffb1b64cc8570bd809a2cc435a6577d33f4ed28ffd0116e5ebe94151446a6e",
+    "actum_msgs/msg/IntendedContact": "RIHS01_ca9c8e065eb8a50c1e7365ef0a8accf7809a9ace707c6ecee3a8015a4f030bb6",
+}
+
+
+def test_the_hashes_of_our_own_types_stay_as_long_as_their_definitions() -> None:
+    assert {name: type_hash(name) for name in OWN} == OWN_HASHES
+
+
+def test_the_message_package_builds_each_of_our_own_types() -> None:
+    built = (Path(message_types.__file__).parent / "actum_msgs/CMakeLists.txt").read_text(encoding="utf-8")
+    assert {f"actum_msgs/{name}" for name in re.findall(r'"(msg/\w+)\.msg"', built)} == {*OWN}
 
 
 def test_topics_stand_in_the_sensors_namespace_and_transforms_at_the_root() -> None:
     declared = node(Settings(), "5e55")
     assert [topic.key.split("::")[0].rpartition("/")[0] for topic in declared.publishes] == [
         "0/actum/kinect0/skeletons", "0/tf", "0/tf_static", "0/actum/kinect0/objects", "0/actum/kinect0/event",
-        "0/actum/kinect0/event_json",
+        "0/actum/kinect0/event_json", "0/actum/kinect0/intent",
     ]  # fmt: skip
     assert [topic.key for topic in declared.subscribes] == [f"0/actum/kinect0/mark/{STRING}"]
 
@@ -49,7 +62,7 @@ def test_tokens_tell_of_the_node_its_topics_and_their_quality_of_service() -> No
     tokens = {topic.name: topic.token for topic in (*declared.publishes, *declared.subscribes)}
     entity = "%/%actum%kinect0/bridge"
     assert tokens["event_json"] == f"@ros2_lv/0/5e55/0/6/MP/{entity}/%actum%kinect0%event_json/{STRING}/:1:,1:,:,:,,"
-    assert tokens["mark"] == f"@ros2_lv/0/5e55/0/7/MS/{entity}/%actum%kinect0%mark/{STRING}/::,10:,:,:,,"
+    assert tokens["mark"] == f"@ros2_lv/0/5e55/0/8/MS/{entity}/%actum%kinect0%mark/{STRING}/::,10:,:,:,,"
     assert tokens["/tf"].endswith(f"/MP/{entity}/%tf/tf2_msgs::msg::dds_::TFMessage_/{HASHES[PUBLISHED[1].type]}/::,100:,:,:,,")  # fmt: skip # noqa: E501
     assert len({token.split("/")[4] for token in tokens.values()}) == len(tokens), "each has a number of its own"
 

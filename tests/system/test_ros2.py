@@ -29,7 +29,7 @@ pytestmark = pytest.mark.system
 STRING = f"std_msgs::msg::dds_::String_/{types.type_hash(types.STRING)}"
 MARK = f"0/actum/kinect0/mark/{STRING}"
 EVENT_JSON = f"0/actum/kinect0/event_json/{STRING}"
-TOPICS = {"skeletons", "%tf", "%tf_static", "objects", "event", "event_json", "mark"}
+TOPICS = {"skeletons", "%tf", "%tf_static", "objects", "event", "event_json", "intent", "mark"}
 CUP = TrackedObject(
     id=3, name="cup", position_m=[0.1, 0.2, 1.5], quaternion_xyzw=[0, 0, 0, 1], confidence=0.75, seen=True
 )

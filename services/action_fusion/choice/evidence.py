@@ -1,7 +1,9 @@
 """What cues judge, the evidence of a segment, and what they answer: a choice."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -10,7 +12,7 @@ from action_fusion.tracks.actors import Actor
 from action_fusion.tracks.comotion import Comotion, comotion, gaps_m, transporting
 from action_fusion.tracks.hand_tracks import BOTH_HANDS, HandTrack, HandTracks
 from action_fusion.tracks.object_tracks import ObjectTrack
-from actum.arrays import Array
+from actum.arrays import Array, stacked
 from actum.messages import Action, Hand, Pointing
 
 PART_HANDS: Mapping[str | None, Hand] = {"right_arm": "right", "left_arm": "left"}
@@ -70,10 +72,8 @@ class Evidence:
         actor: the actor's postures in the segment itself.
         hands: the tracks of all hands, from some time before the segment to its end.
         tracks: those of the objects, over the same time.
+        objects_ego: where the objects were at the actor's p postures, egocentric, (objects, p, 3).
         near: the objects with the hand that came nearest to each; none where no hand is known.
-        transporting: the pairs of anybody's hand and an object that this hand transports.
-        own: the pairs of the hands that may have acted: those of one hand, then those of the other.
-        free: the same without the objects that only other hands transport.
         settings: thresholds and labels.
     """
 
@@ -82,11 +82,30 @@ class Evidence:
     actor: Actor
     hands: HandTracks
     tracks: Sequence[ObjectTrack]
+    objects_ego: Array
     near: Sequence[Proximity]
-    transporting: frozenset[Comotion]
-    own: Sequence[Comotion]
-    free: Sequence[Comotion]
     settings: Settings
+
+    @cached_property
+    def pairs(self) -> Sequence[Comotion]:
+        """The pairs of everyone's hands with the objects that may concern the actor."""
+        return _concerned([one.track for one in self.near], self.hands, self.settings)
+
+    @cached_property
+    def transporting(self) -> frozenset[Comotion]:
+        """The pairs of anybody's hand and an object that this hand transports."""
+        return transporting(self.pairs, self.settings.moved_m)
+
+    @cached_property
+    def own(self) -> Sequence[Comotion]:
+        """The pairs of the hands that may have acted: those of one hand, then those of the other."""
+        return [pair for side in self.sides for pair in self.pairs if pair.hand is self.hands.own.get(side)]
+
+    @cached_property
+    def free(self) -> Sequence[Comotion]:
+        """The same without the objects that only other hands transport."""
+        transported = {pair.track.id for pair in self.transporting}
+        return [pair for pair in self.own if pair in self.transporting or pair.track.id not in transported]
 
 
 def gather(
@@ -95,13 +114,10 @@ def gather(
     """Gather the evidence; the hand that may have acted is the marked one, else that of the moving arm, else either."""
     side = action.hand or PART_HANDS.get(action.part)
     sides = BOTH_HANDS if side is None else (side,)
-    near = _proximities(actor, tracks, sides)
-    pairs = _concerned([one.track for one in near], hands, settings)
-    by_hand = transporting(pairs, settings.moved_m)
-    transported = {pair.track.id for pair in by_hand}
-    own = [pair for side in sides for pair in pairs if pair.hand is hands.own.get(side)]
-    free = [pair for pair in own if pair in by_hand or pair.track.id not in transported]
-    return Evidence(action, sides, actor, hands, tracks, near, by_hand, own, free, settings)
+    at_postures_m = stacked([track.at(actor.stamps_ns) for track in tracks], len(actor.stamps_ns), 3)
+    objects_ego = actor.to_ego(at_postures_m)
+    near = _proximities(tracks, objects_ego, actor, sides)
+    return Evidence(action, sides, actor, hands, tracks, objects_ego, near, settings)
 
 
 def pairs_of(
@@ -112,24 +128,29 @@ def pairs_of(
     return [comotion(hands[hand], tracks[track], settings.reach_m, settings.moved_m) for hand, track in close]
 
 
-def smallest_distance(object_ego: Array, hand_ego: Array) -> float:
-    """Compute min over the segment of PM = ||O - hand||_2 in metres; infinite where the hand is never known.
+def smallest_distances(objects_ego: Array, hands_ego: Array) -> Array:
+    """Compute min over the segment of PM = ||O - hand||_2 in metres, (objects, hands); infinite for an unknown hand.
 
-    Both arguments are (p, 3) in metres in the actor's egocentric frame, NaN where unknown (paper, section 2.2).
+    Both arguments are (objects or hands, p, 3) in metres in the actor's egocentric frame, NaN where unknown (paper,
+    section 2.2).
     """
-    distances = np.linalg.norm(object_ego - hand_ego, axis=1)
-    return float(np.nanmin(distances)) if np.isfinite(distances).any() else np.inf
+    distances = np.linalg.norm(objects_ego[:, None] - hands_ego, axis=3)
+    smallest: Array = np.fmin.reduce(distances, axis=2, initial=np.inf)
+    return smallest
 
 
-def _proximities(actor: Actor, tracks: Sequence[ObjectTrack], sides: Sequence[Hand]) -> list[Proximity]:
+def _proximities(
+    tracks: Sequence[ObjectTrack], objects_ego: Array, actor: Actor, sides: Sequence[Hand]
+) -> list[Proximity]:
     """Measure the smallest distance of a hand to each object, where one is known."""
-    near = []
-    for track in tracks:
-        object_ego = actor.to_ego(track.at(actor.stamps_ns))
-        distances_m = {side: smallest_distance(object_ego, actor.hand_m(side)) for side in sides}
-        nearer = min(sides, key=distances_m.__getitem__)
-        near.append(Proximity(track, distances_m[nearer], nearer))
-    return [one for one in near if np.isfinite(one.distance_m)]
+    hands_ego = np.array([actor.hand_m(side) for side in sides])
+    distances_m = smallest_distances(objects_ego, hands_ego).tolist()
+    nearest = [min(zip(of_hands, sides, strict=True), key=lambda each: each[0]) for of_hands in distances_m]
+    return [
+        Proximity(track, distance_m, side)
+        for track, (distance_m, side) in zip(tracks, nearest, strict=True)
+        if math.isfinite(distance_m)
+    ]
 
 
 def _concerned(tracks: Sequence[ObjectTrack], hands: HandTracks, settings: Settings) -> list[Comotion]:

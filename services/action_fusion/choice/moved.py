@@ -55,7 +55,7 @@ def sent_away(evidence: Evidence) -> Choice | None:
     """
     reach_m, moved_m, sent = evidence.settings.reach_with_tool_m, evidence.settings.moved_m, []
     for pair in _displaced(evidence):
-        thrown = (pair.near & pair.recent).any()
+        thrown = (pair.near & pair.hand.recent).any()
         if thrown or comotion(pair.hand, pair.track, reach_m, moved_m).is_transported(moved_m):
             sent.append(pair)
     return _nearest(sent)

@@ -8,7 +8,6 @@ import numpy as np
 from action_fusion.choice.evidence import NO_HAND, OFF_THE_LINE, Choice, Evidence
 from action_fusion.tracks.actors import Actor
 from action_fusion.tracks.comotion import FURTHEST_SHARE
-from action_fusion.tracks.object_tracks import ObjectTrack
 from actum.arrays import Array, median
 from actum.messages import Hand, Pointing
 
@@ -31,7 +30,7 @@ SMALLEST_M = 1e-9
 def pointed_at(evidence: Evidence) -> Choice:
     """Choose the object at the smallest angle to the pointing ray; objects at nearly the same angle are rivals."""
     settings, side = evidence.settings, pointing_side(evidence.actor, evidence.sides)
-    by_angle = zip(_angles(evidence.tracks, evidence.actor, side), evidence.tracks, strict=True)
+    by_angle = zip(_angles(evidence.objects_ego, evidence.actor, side), evidence.tracks, strict=True)
     ranked = sorted((one for one in by_angle if math.isfinite(one[0])), key=lambda one: one[0])
     if not ranked:
         return Choice(why=NO_HAND)
@@ -58,33 +57,38 @@ def fingertip_m(actor: Actor, side: Hand) -> Array:
     return tip
 
 
-def pointing_angle(object_ego: Array, tip_ego: Array, origin_ego: Array) -> float:
-    """Compute the angle (rad) between the median rays from origin to tip and to object, while the arm is out.
+def pointing_angles(objects_ego: Array, tip_ego: Array, origin_ego: Array) -> list[float]:
+    """Compute the angles (rad) between the median rays from origin to tip and to objects, while the arm is out.
 
-    All arguments are (p, 3) in metres in the actor's egocentric frame, NaN where unknown. The angle is infinite where
-    origin and tip are never known together.
+    The objects are (objects, p, 3), tip and origin (p, 3), in metres in the actor's egocentric frame, NaN where
+    unknown. The angles are infinite where origin and tip are never known together.
     """
     known = np.flatnonzero(np.isfinite(tip_ego + origin_ego).all(axis=1))
     if not len(known):
-        return np.inf
-    to_tip, to_object = tip_ego[known] - origin_ego[known], object_ego[known] - origin_ego[known]
+        return [np.inf] * len(objects_ego)
+    to_tip = tip_ego[known] - origin_ego[known]
     last = median(to_tip[_holding(to_tip)])
     out = np.linalg.norm(to_tip - last, axis=1) <= POINTING_M
-    a, b = (median(to_tip[out]), median(to_object[out])) if out.any() else (last, to_object[-1])
-    length = float(np.linalg.norm(a) * np.linalg.norm(b))
-    return float(np.arccos(np.clip(a @ b / max(length, SMALLEST_M), -1.0, 1.0)))
+    counted = known[out] if out.any() else known[-1:]
+    ray = median(to_tip[out]) if out.any() else last
+    to_objects = median((objects_ego[:, counted] - origin_ego[counted]).swapaxes(0, 1))
+    return [_angle(ray, to_object) for to_object in to_objects]
 
 
-def _angles(tracks: Sequence[ObjectTrack], actor: Actor, side: Hand) -> list[float]:
+def _angle(one: Array, other: Array) -> float:
+    """Compute the angle (rad) between two vectors (3,)."""
+    length = float(np.linalg.norm(one) * np.linalg.norm(other))
+    return float(np.arccos(np.clip(one @ other / max(length, SMALLEST_M), -1.0, 1.0)))
+
+
+def _angles(objects_ego: Array, actor: Actor, side: Hand) -> list[float]:
     """Measure each object's angle to the ray from head to finger, or to that of the arm if that fits clearly better.
 
     Most people point along the line of sight over the finger, some along the stretched arm.
     """
-    objects = [actor.to_ego(track.at(actor.stamps_ns)) for track in tracks]
     head, tip = actor.joint_m("head"), fingertip_m(actor, side)
     shoulder, hand = actor.joint_m(f"{side}_shoulder"), actor.hand_m(side)
-    by_eye = [pointing_angle(object_ego, tip, head) for object_ego in objects]
-    by_arm = [pointing_angle(object_ego, hand, shoulder) for object_ego in objects]
+    by_eye, by_arm = pointing_angles(objects_ego, tip, head), pointing_angles(objects_ego, hand, shoulder)
     arm_fits = math.isfinite(min(by_eye)) and min(by_arm) < CLEARLY * min(by_eye)
     return by_arm if arm_fits else by_eye
 

@@ -1,7 +1,6 @@
 """Whether the samples of a segment have come: an object that is chosen without them may be the wrong one."""
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +62,6 @@ def _why_objects_lost(stamps_ns: NDArray[np.int64], start_ns: int, end_ns: int) 
     tolerated_ns = max(LOST_NS, LOST_INTERVALS * usual_ns)
     if late_s := longest_loss_s([(start_ns, int(stamps_ns[0]))], start_ns, end_ns, tolerated_ns):
         return f"objects lost: the first came {late_s:.1f} s after the start"
-    gaps_ns = [(before_ns, min(then_ns, end_ns)) for before_ns, then_ns in pairwise([*stamps_ns.tolist(), end_ns])]
+    gaps_ns = zip(stamps_ns.tolist(), [*np.minimum(stamps_ns[1:], end_ns).tolist(), end_ns], strict=True)
     lost_s = longest_loss_s(gaps_ns, start_ns, end_ns, tolerated_ns)
     return None if lost_s is None else f"objects lost: none came for {lost_s:.1f} s of the segment"

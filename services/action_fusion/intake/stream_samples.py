@@ -65,10 +65,10 @@ class ObjectsSample(Sample):
     `quaternions_xyzw` (4,) holds the orientations of the objects that were seen.
     """
 
-    positions_m: dict[int, Array]
+    positions_m: dict[int, list[float]]
     names: dict[int, str]
     image_tracked: frozenset[int]
-    quaternions_xyzw: dict[int, Array]
+    quaternions_xyzw: dict[int, list[float]]
 
 
 def posture_sample(posture: Posture, counters: Counters) -> PostureSample:
@@ -88,17 +88,17 @@ def objects_sample(message: Objects, counters: Counters) -> ObjectsSample:
     return ObjectsSample(
         message.stamp_ns,
         message.session_id,
-        {each.id: np.array(each.position_m, dtype=np.float64) for each in near},
+        {each.id: each.position_m for each in near},
         {each.id: each.name for each in near},
         frozenset(each.id for each in near if not each.seen),
         {each.id: unit for each in near if each.seen and (unit := _unit(each.quaternion_xyzw)) is not None},
     )
 
 
-def _unit(quaternion: list[float]) -> Array | None:
-    """Normalise a quaternion to unit length (4,); None where its length is far from 1."""
+def _unit(quaternion: list[float]) -> list[float] | None:
+    """Normalise a quaternion to unit length; None where its length is far from 1."""
     length = math.hypot(*quaternion)
-    return np.array(quaternion) / length if abs(length - 1) <= UNIT_TOLERANCE else None
+    return [each / length for each in quaternion] if abs(length - 1) <= UNIT_TOLERANCE else None
 
 
 def _body(posture: Posture, counters: Counters) -> Body | None:
@@ -108,10 +108,12 @@ def _body(posture: Posture, counters: Counters) -> Body | None:
     if not geometry.is_rigid(ego_from_camera, MAX_COORDINATE_M):
         return None
     joints_m = joints_to_array(posture.joints_m)
-    joints_m[~(np.abs(joints_m) < MAX_COORDINATE_M).all(axis=1)] = np.nan
-    known = np.isfinite(joints_m).all(axis=1)
-    if np.count_nonzero(~known) > posture.joints_m.count(None):
-        counters.reject("bad_joint", f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far")
+    unusable = ~(np.abs(joints_m) < MAX_COORDINATE_M)
+    if unusable.any():
+        joints_m[unusable.any(axis=1)] = np.nan
+        if np.count_nonzero(np.isnan(joints_m[:, 0])) > posture.joints_m.count(None):
+            what = f"agent {posture.agent} at {posture.stamp_ns}: a joint not finite or absurdly far"
+            counters.reject("bad_joint", what)
     depth_std_m = min(posture.depth_std_m or 0.0, MAX_COORDINATE_M)
     up_in_camera = LEVEL if posture.up_in_camera is None else tuple(posture.up_in_camera)
     hands_m = (joints_m[HANDS] - ego_from_camera[:3, 3]) @ ego_from_camera[:3, :3]

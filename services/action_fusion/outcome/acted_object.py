@@ -60,7 +60,7 @@ def _end_pose(track: ObjectTrack, frames: Sequence[ObjectsSample]) -> ObjectPose
     return ObjectPose(
         frame="camera",
         position_m=(track.end_m - track.depth_shift_m).tolist(),
-        quaternion_xyzw=None if quaternion is None else quaternion.tolist(),
+        quaternion_xyzw=quaternion,
     )
 
 

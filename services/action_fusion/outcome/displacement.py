@@ -7,6 +7,7 @@ import numpy as np
 from action_fusion.choice.evidence import Evidence
 from action_fusion.tracks.actors import Actor
 from action_fusion.tracks.object_tracks import ObjectTrack
+from actum import geometry
 from actum.arrays import Array
 from actum.messages import Motion
 from actum.node import SECOND_NS
@@ -91,7 +92,7 @@ def _level_from_camera(actor: Actor) -> Array | None:
     if length < SMALLEST_FORWARD:
         return None
     forward = horizontal / length
-    return np.stack([np.cross(forward, up), up, forward])
+    return np.array([geometry.cross(forward.tolist(), up.tolist()), up, forward])
 
 
 def _direction(displacement_m: Array, moved_m: float, has_front: bool) -> str | None:

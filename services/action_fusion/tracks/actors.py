@@ -33,9 +33,12 @@ class Actor:
         return self.joint_m(f"{side}_hand")
 
     def to_ego(self, positions_m: Array) -> Array:
-        """Map one camera-frame position for each posture (p, 3) to that posture's egocentric frame (p, 3)."""
-        rotations, translations = self.ego_from_camera[:, :3, :3], self.ego_from_camera[:, :3, 3]
-        in_ego_m: Array = np.einsum("pij,pj->pi", rotations, positions_m) + translations
+        """Map a camera-frame position for each posture (…, p, 3) to that posture's egocentric frame (…, p, 3).
+
+        The terms are added in the order in which `np.einsum` adds three, which takes several times as long.
+        """
+        x_m, y_m, z_m = (self.ego_from_camera[:, :3, axis] * positions_m[..., axis, None] for axis in range(3))
+        in_ego_m: Array = x_m + z_m + y_m + self.ego_from_camera[:, :3, 3]
         return in_ego_m
 
 

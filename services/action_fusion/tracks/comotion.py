@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from action_fusion.intake.buffers import LOOK_BACK_NS
 from action_fusion.tracks.hand_tracks import HandTrack
 from action_fusion.tracks.object_tracks import ObjectTrack
-from actum.arrays import Array, Indices, Mask, median
+from actum.arrays import Array, Indices, Mask, median, stacked
+from actum.core import steps
 from actum.node import SECOND_NS
 
 STEP_NS = 1 * SECOND_NS
@@ -30,9 +30,9 @@ class Comotion:
     """The motion of an object relative to a hand, at the n instants of the hand's track.
 
     `object_m` (n, 3) is the object's position in the camera frame, `hand_to_object_m` (n, 3) the vector from the hand
-    to it, `distances_m` (n,) the length of that vector. `near` (n,) tells whether the object is within reach,
-    `in_motion` (n,) whether its displacement over `STEP_NS` is noticeable, too, and `with_hand` (n,) whether it is the
-    hand that moves it.
+    to it, `distances_m` (n,) the length of that vector, `path_m` (n,) the object's path since the previous instant.
+    `near` (n,) tells whether the object is within reach, `in_motion` (n,) whether its displacement over `STEP_NS` is
+    noticeable, too, and `with_hand` (n,) whether it is the hand that moves it.
     """
 
     hand: HandTrack
@@ -40,30 +40,20 @@ class Comotion:
     object_m: Array
     hand_to_object_m: Array
     distances_m: Array
+    path_m: Array
     near: Mask
     in_motion: Mask
     with_hand: Mask
 
-    @cached_property
-    def path_m(self) -> Array:
-        """The object's path (n,) since the previous instant."""
-        path_m: Array = np.linalg.norm(np.diff(self.object_m, axis=0, prepend=self.object_m[:1]), axis=1)
-        return path_m
-
-    @property
-    def recent(self) -> Mask:
-        """Mask (n,) of the instants in the segment or at most `LOOK_BACK_NS` before it."""
-        recent: Mask = self.hand.stamps_ns >= -LOOK_BACK_NS
-        return recent
-
     @property
     def in_motion_nearby(self) -> bool:
         """Whether the object was in motion within reach during the segment."""
-        return bool((self.in_motion & self.hand.in_segment).any())
+        return bool(self.in_motion[self.hand.stamps_ns.searchsorted(0) :].any())
 
     def transport_m(self, since_ns: float = -LOOK_BACK_NS) -> float:
         """Return the length of the object's path in the hand since an instant, by default just before the segment."""
-        return float(self.path_m[self.with_hand & (self.hand.stamps_ns >= since_ns)].sum())
+        first = self.hand.stamps_ns.searchsorted(since_ns)
+        return float(self.path_m[first:][self.with_hand[first:]].sum())
 
     def is_transported(self, moved_m: float) -> bool:
         """Whether the hand moved the object by `moved_m` or more, and for at least half of its path near the hand.
@@ -72,18 +62,17 @@ class Comotion:
         """
         if not self.with_hand.any():
             return False
-        otherwise_m = float(self.path_m[self.recent & self.in_motion & ~self.with_hand].sum())
+        otherwise_m = float(self.path_m[self.hand.recent & self.in_motion & ~self.with_hand].sum())
         return self.transport_m() >= max(moved_m, otherwise_m) or self._is_held_since(moved_m)
 
     def _is_held_since(self, moved_m: float) -> bool:
         """Whether the hand moved the object before the segment, and kept it at a constant offset up to the segment."""
-        before = np.flatnonzero(~self.hand.in_segment)
-        recent = before[self.recent[before]]
-        if not len(recent):
+        recent, begin = self.hand.stamps_ns.searchsorted((-LOOK_BACK_NS, 0)).tolist()
+        if recent == begin or not self.with_hand[:begin].any():
             return False
-        in_hand_m = median(self.hand_to_object_m[recent])
-        slipped = distances_m(self.hand_to_object_m[before], in_hand_m) > STEADY_M
-        held = before[np.flatnonzero(slipped)[-1] + 1 :] if slipped.any() else before
+        in_hand_m = median(self.hand_to_object_m[recent:begin])
+        slipped = (distances_m(self.hand_to_object_m[:begin], in_hand_m) > STEADY_M).nonzero()[0]
+        held = slice(slipped[-1] + 1 if len(slipped) else 0, begin)
         return float(self.path_m[held][self.with_hand[held]].sum()) >= moved_m
 
 
@@ -94,24 +83,35 @@ def comotion(hand: HandTrack, track: ObjectTrack, reach_m: float, moved_m: float
     its present position. The hand moves the object where |d_o| is `moved_m` or more, the explained share
     1 - |d_o - d_h|^2 / |d_o|^2 exceeds 1/2, and the object is within `reach_m`.
     """
+    if steps is None:
+        return _comotion_in_numpy(hand, track, reach_m, moved_m)
+    n = len(hand.stamps_ns)
+    numbers, marks = np.empty(8 * n), np.empty((3, n), np.bool_)
+    steps.comotion(
+        hand.stamps_ns, hand.positions_m, track.stamps_ns, track.positions_m, STEP_NS, -LOOK_BACK_NS, FURTHEST_SHARE,
+        reach_m, moved_m if track.extent_m >= moved_m else np.inf, 1 - EXPLAINED, numbers, marks,
+    )  # fmt: skip
+    return Comotion(hand, track, *numbers[: 6 * n].reshape(2, n, 3), *numbers[6 * n :].reshape(2, n), *marks)
+
+
+def _comotion_in_numpy(hand: HandTrack, track: ObjectTrack, reach_m: float, moved_m: float) -> Comotion:
     object_m = track.at(hand.stamps_ns)
     hand_to_object_m = object_m - hand.positions_m
-    apart_m = np.linalg.norm(hand_to_object_m, axis=1)
+    apart_m = distances_m(object_m, hand.positions_m)
+    path_m = distances_m(object_m, object_m[[0, *range(len(object_m) - 1)]])
     near: Mask = apart_m <= reach_m
     in_motion, with_hand = np.zeros_like(near), np.zeros_like(near)
-    pair = Comotion(hand, track, object_m, hand_to_object_m, apart_m, near, in_motion, with_hand)
     instants = np.flatnonzero(near)
     if len(instants) and track.extent_m >= moved_m:
         since = instants_furthest_away(object_m, hand.stamps_ns, STEP_NS, instants)
         first_recent = np.searchsorted(hand.stamps_ns, -LOOK_BACK_NS)
         since = np.where(instants < first_recent, since, np.maximum(since, first_recent))
-        object_step = object_m[instants] - object_m[since]
-        in_motion[instants] = np.linalg.norm(object_step, axis=1) >= moved_m
-        difference = object_step - (hand.positions_m[instants] - hand.positions_m[since])
-        unexplained = np.einsum("ij,ij->i", difference, difference)
-        explained = unexplained < (1 - EXPLAINED) * np.einsum("ij,ij->i", object_step, object_step)
+        object_step, hand_step = (each[instants] - each[since] for each in (object_m, hand.positions_m))
+        moved2_m2 = squared_distances_m2(object_step, np.zeros(3))
+        in_motion[instants] = np.sqrt(moved2_m2) >= moved_m
+        explained = squared_distances_m2(object_step, hand_step) < (1 - EXPLAINED) * moved2_m2
         with_hand[instants] = in_motion[instants] & explained
-    return pair
+    return Comotion(hand, track, object_m, hand_to_object_m, apart_m, path_m, near, in_motion, with_hand)
 
 
 def gaps_m(hands: Sequence[HandTrack], tracks: Sequence[ObjectTrack]) -> Array:
@@ -119,11 +119,9 @@ def gaps_m(hands: Sequence[HandTrack], tracks: Sequence[ObjectTrack]) -> Array:
 
     No hand was ever closer to an object than that.
     """
-    hand_bounds_m = np.array([hand.bounds_m for hand in hands]).reshape(-1, 1, 2, 3)
-    track_bounds_m = np.array([track.bounds_m for track in tracks]).reshape(1, -1, 2, 3)
-    beyond_m = np.maximum(
-        hand_bounds_m[:, :, 0] - track_bounds_m[:, :, 1], track_bounds_m[:, :, 0] - hand_bounds_m[:, :, 1]
-    )
+    hand_bounds_m = stacked([hand.bounds_m for hand in hands], 2, 3)[:, None]
+    track_bounds_m = stacked([track.bounds_m for track in tracks], 2, 3)
+    beyond_m = np.maximum(hand_bounds_m[:, :, 0] - track_bounds_m[:, 1], track_bounds_m[:, 0] - hand_bounds_m[:, :, 1])
     gaps: Array = np.linalg.norm(np.maximum(beyond_m, 0.0), axis=2)
     return gaps
 
@@ -131,18 +129,21 @@ def gaps_m(hands: Sequence[HandTrack], tracks: Sequence[ObjectTrack]) -> Array:
 def transporting(pairs: Sequence[Comotion], moved_m: float) -> frozenset[Comotion]:
     """Return the pairs in which the hand transports the object, together with other hands or one after another."""
     moving = [pair for pair in pairs if pair.with_hand.any()]
-    return frozenset(
-        pair for pair in moving if pair.is_transported(moved_m) or _without_others(pair, moving).is_transported(moved_m)
-    )
+    return frozenset(pair for pair in moving if _is_transported_among(pair, moving, moved_m))
 
 
-def _without_others(pair: Comotion, pairs: Sequence[Comotion]) -> Comotion:
-    """Clear `in_motion` and `with_hand` at the instants at which another hand moved the object."""
+def _is_transported_among(pair: Comotion, pairs: Sequence[Comotion], moved_m: float) -> bool:
+    """Whether the hand transports the object, perhaps only at the instants at which no other hand moved the object."""
+    if pair.is_transported(moved_m):
+        return True
+    others = [other for other in pairs if other.track is pair.track and other is not pair]
+    if not others:
+        return False
     alone = np.ones_like(pair.with_hand)
-    for other in pairs:
-        if other.track is pair.track and other is not pair:
-            alone &= np.interp(pair.hand.stamps_ns, other.hand.stamps_ns, other.with_hand) < 0.5
-    return replace(pair, in_motion=pair.in_motion & alone, with_hand=pair.with_hand & alone)
+    for other in others:
+        alone &= np.interp(pair.hand.stamps_ns, other.hand.stamps_ns, other.with_hand) < 0.5
+    pair_alone = replace(pair, in_motion=pair.in_motion & alone, with_hand=pair.with_hand & alone)
+    return pair_alone.is_transported(moved_m)
 
 
 def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: float, instants: Indices) -> Indices:
@@ -169,10 +170,16 @@ def instants_furthest_away(positions_m: Array, stamps_ns: Array, within_ns: floa
 
 
 def distances_m(points_m: Array, others_m: Array) -> Array:
-    """Return the distances between points (…, 3) and others, which broadcast to each other.
+    """Return the distances between points (…, 3) and others, which broadcast to each other."""
+    distances: Array = np.sqrt(squared_distances_m2(points_m, others_m))
+    return distances
+
+
+def squared_distances_m2(points_m: Array, others_m: Array) -> Array:
+    """Return the squares of these distances.
 
     An axis at a time, since NumPy takes several times as long to sum over an axis of three.
     """
     x, y, z = (points_m[..., axis] - others_m[..., axis] for axis in range(3))
-    distances: Array = np.sqrt(x * x + y * y + z * z)
-    return distances
+    squares: Array = x * x + y * y + z * z
+    return squares

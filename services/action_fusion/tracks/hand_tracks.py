@@ -10,8 +10,10 @@ from functools import cached_property
 
 import numpy as np
 
-from action_fusion.intake.buffers import Hands
+from action_fusion.intake.buffers import LOOK_BACK_NS, Hands
+from action_fusion.tracks.paths import bounds_m, interpolated
 from actum.arrays import Array, Indices, Mask
+from actum.core import steps
 from actum.messages import Hand
 from actum.node import SECOND_NS
 
@@ -48,20 +50,26 @@ class HandTrack:
     stamps_ns: Array
     positions_m: Array
 
-    @property
+    @cached_property
     def in_segment(self) -> Mask:
         """Mask (n,) of the instants in the segment; the others lie before it."""
         inside: Mask = self.stamps_ns >= 0
         return inside
 
     @cached_property
+    def recent(self) -> Mask:
+        """Mask (n,) of the instants in the segment or at most `LOOK_BACK_NS` before it."""
+        recent: Mask = self.stamps_ns >= -LOOK_BACK_NS
+        return recent
+
+    @cached_property
     def bounds_m(self) -> Array:
         """The least and the greatest coordinates (2, 3) of the positions."""
-        return np.stack([self.positions_m.min(axis=0), self.positions_m.max(axis=0)])
+        return bounds_m(self.positions_m)
 
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
-        return np.stack([np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T], axis=1)
+        return interpolated(stamps_ns, self.stamps_ns, self.positions_m)
 
     def speeds_m_per_s(self) -> Array:
         """Measure the speed (n,) over a fifth of a second around each instant."""
@@ -105,15 +113,27 @@ def hand_tracks(own: Hands, others: Sequence[Hands]) -> HandTracks:
 
 
 def _tracks_of(hands: Hands) -> dict[Hand, HandTrack]:
-    tracks = [_hand_track(side, hands.stamps_ns, hands.positions_m[:, n]) for n, side in enumerate(BOTH_HANDS)]
+    tracks = [_hand_track(hands, n) for n in range(len(BOTH_HANDS))]
     return {track.side: track for track in tracks if len(track.stamps_ns)}
 
 
-def _hand_track(side: Hand, stamps_ns: Array, positions_m: Array) -> HandTrack:
-    known = np.flatnonzero(np.isfinite(positions_m[:, 0]))
-    smooth_m = _smoothed(positions_m[known], stamps_ns[known])
-    stride = max(1, math.ceil(len(known) / MOST_INSTANTS))
-    return HandTrack(side, stamps_ns[known][::stride], smooth_m[::stride])
+def _hand_track(hands: Hands, number: int) -> HandTrack:
+    stamps_ns, smooth_m = known_smoothed(hands, number)
+    if len(stamps_ns) > MOST_INSTANTS:
+        stride = math.ceil(len(stamps_ns) / MOST_INSTANTS)
+        stamps_ns, smooth_m = stamps_ns[::stride].copy(), smooth_m[::stride].copy()
+    return HandTrack(BOTH_HANDS[number], stamps_ns, smooth_m)
+
+
+def known_smoothed(hands: Hands, number: int) -> tuple[Array, Array]:
+    """Return the stamps (k,) at which the right (0) or the left hand (1) is known, and its smooth positions (k, 3)."""
+    if steps is None:
+        known = np.flatnonzero(np.isfinite(hands.positions_m[:, number, 0]))
+        stamps_ns = hands.stamps_ns[known]
+        return stamps_ns, _smoothed(hands.positions_m[known, number], stamps_ns)
+    stamps_ns, smooth_m = np.empty(len(hands.stamps_ns)), np.empty((len(hands.stamps_ns), 3))
+    count = steps.smoothed_hand(hands.stamps_ns, hands.positions_m, number, SMOOTHING_NS, stamps_ns, smooth_m)
+    return stamps_ns[:count], smooth_m[:count]
 
 
 def _smoothed(positions_m: Array, stamps_ns: Array) -> Array:

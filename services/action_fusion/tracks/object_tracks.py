@@ -1,5 +1,6 @@
 """Tracks of the objects in a segment: positions interpolated between the images with a sighting or image tracking."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -8,6 +9,7 @@ import numpy as np
 
 from action_fusion.intake.buffers import Sightings
 from action_fusion.intake.stream_samples import ObjectsSample
+from action_fusion.tracks.paths import bounds_m, interpolated
 from actum.arrays import Array, Mask, median
 from actum.node import SECOND_NS
 
@@ -52,17 +54,25 @@ class ObjectTrack:
 
     def at(self, stamps_ns: Array) -> Array:
         """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
-        axes = [np.interp(stamps_ns, self.stamps_ns, axis) for axis in self.positions_m.T]
-        return np.stack(axes, axis=1)
+        return interpolated(stamps_ns, self.stamps_ns, self.positions_m)
 
     def turn(self, moved_m: float) -> int | None:
         """Find the index of the turn of an object that came back: its position in the segment furthest from the start.
 
         None where the object did not get `moved_m` away, or does not end nearer to the start than to that position.
         """
-        if self.extent_m < moved_m or self._furthest is None or self._furthest[1] < moved_m:
+        if min(self.extent_m, self._most_away_m) < moved_m or self._furthest is None or self._furthest[1] < moved_m:
             return None
         return self._furthest[0]
+
+    @cached_property
+    def _most_away_m(self) -> float:
+        """A distance from the start (m) that no position in the segment exceeds, by their bounds."""
+        inside_m = self.positions_m[self.stamps_ns.searchsorted(0) :]
+        if not len(inside_m):
+            return 0.0
+        x, y, z = np.abs(bounds_m(inside_m) - self._start_m).max(axis=0).tolist()
+        return math.sqrt(x * x + y * y + z * z)
 
     @cached_property
     def _furthest(self) -> tuple[int, float] | None:
@@ -71,11 +81,12 @@ class ObjectTrack:
         if len(inside) < SETTLED_SAMPLES:
             return None
         positions_m = self.positions_m[inside]
-        settled_m = median(np.stack([positions_m[n : len(inside) - 2 + n] for n in range(SETTLED_SAMPLES)]))
+        earlier_m, here_m, later_m = (positions_m[n : len(inside) - 2 + n] for n in range(SETTLED_SAMPLES))
+        low_m, high_m = np.minimum(earlier_m, here_m), np.maximum(earlier_m, here_m)
+        settled_m = np.maximum(low_m, np.minimum(high_m, later_m))  # the median
         away_m = np.linalg.norm(settled_m - self._start_m, axis=1)
         furthest = int(np.argmax(away_m))
-        back_m = np.linalg.norm(self.end_m - settled_m[furthest])
-        came_back = np.linalg.norm(self.end_m - self._start_m) < back_m
+        came_back = math.dist(self.end_m, self._start_m) < math.dist(self.end_m, settled_m[furthest])
         if not came_back or away_m[furthest] < TURN_TO_NOISE * noise_m(positions_m):
             return None
         return int(inside[furthest + SETTLED_SAMPLES // 2]), float(away_m[furthest])
@@ -90,27 +101,27 @@ class ObjectTrack:
 
     def is_displaced(self, moved_m: float) -> bool:
         """Whether the object is displaced by `moved_m` or more."""
-        return self.extent_m >= moved_m and float(np.linalg.norm(self.displacement_m(moved_m))) >= moved_m
+        return self.extent_m >= moved_m and math.hypot(*self.displacement_m(moved_m).tolist()) >= moved_m
 
     @cached_property
     def bounds_m(self) -> Array:
         """The least and the greatest coordinates (2, 3) of the positions."""
-        return np.stack([self.positions_m.min(axis=0), self.positions_m.max(axis=0)])
+        return bounds_m(self.positions_m)
 
     @cached_property
     def extent_m(self) -> float:
         """The diagonal of these bounds: no two positions are further apart."""
-        return float(np.linalg.norm(self.bounds_m[1] - self.bounds_m[0]))
+        return math.dist(*self.bounds_m.tolist())
 
     @cached_property
     def end_m(self) -> Array:
         """The last position (3,): the median of the last sightings or, if occluded, the mean of the rest."""
-        latest = self.stamps_ns >= self.stamps_ns[-1] - SETTLED_NS
+        latest = int(self.stamps_ns.searchsorted(self.stamps_ns[-1] - SETTLED_NS))
         if self.seen[-1]:
-            unseen = np.flatnonzero(~self.seen)
-            latest[: unseen[-1] + 1 if len(unseen) else 0] = False
-            return median(self.positions_m[latest][-SETTLED_SAMPLES:])
-        away = ~latest | (np.linalg.norm(self.positions_m - self.positions_m[-1], axis=1) > RESTING_M)
+            unseen = (~self.seen).nonzero()[0]
+            return median(self.positions_m[max(latest, *unseen[-1:] + 1, len(self.seen) - SETTLED_SAMPLES) :])
+        away = np.linalg.norm(self.positions_m - self.positions_m[-1], axis=1) > RESTING_M
+        away[:latest] = True
         before = np.flatnonzero(away | self.seen)
         rest_m: Array = self.positions_m[before[-1] + 1 if len(before) else 0 :].mean(axis=0)
         return rest_m
@@ -118,10 +129,10 @@ class ObjectTrack:
     @cached_property
     def _start_m(self) -> Array:
         """The position (3,) at the segment's start, by the sightings around it."""
-        apart_ns = np.abs(self.stamps_ns[self.seen])
-        nearest = np.argsort(apart_ns, kind="stable")[:SETTLED_SAMPLES]
-        around = nearest[apart_ns[nearest] <= SETTLED_NS]
-        return median(self.positions_m[self.seen][around]) if len(around) else self.at(np.zeros(1))[0]
+        first, beyond = self.stamps_ns.searchsorted((-SETTLED_NS, SETTLED_NS + 1)).tolist()
+        around = first + self.seen[first:beyond].nonzero()[0]
+        nearest = around[np.abs(self.stamps_ns[around]).argsort(kind="stable")[:SETTLED_SAMPLES]]
+        return median(self.positions_m[nearest]) if len(nearest) else self.at(np.zeros(1))[0]
 
 
 def object_tracks(sightings: Mapping[int, Sightings], frames: Sequence[ObjectsSample]) -> list[ObjectTrack]:

@@ -57,7 +57,9 @@ def fill_occlusions(
     """
     grasped = [_keep_grasped(track, hands, settings) for track in tracks]
     bridged = [_bridge_gaps(track, hands, settings) for track in grasped if len(track.stamps_ns)]
-    lost = [pair for hand in hands if (pair := _lost_in_hand(bridged, hand, end_ns, settings)) is not None]
+    unseen = [track for track in bridged if end_ns - track.stamps_ns[-1] >= SHORTEST_GAP_NS]
+    found = [_lost_in_hand(unseen, bridged, hand, end_ns, settings) for hand in hands if unseen]
+    lost = [pair for pair in found if pair is not None]
     grasps = {track.id: grasp for grasp, track in sorted(lost, key=lambda pair: -pair[0].distance_m)}
     return [_extrapolated(track, grasps[track.id]) if track.id in grasps else track for track in bridged]
 
@@ -90,7 +92,7 @@ def _holds(hand: HandTrack, track: ObjectTrack, first: int, last: int, settings:
 
 def _bridge_gaps(track: ObjectTrack, hands: Sequence[HandTrack], settings: Settings) -> ObjectTrack:
     """Fill each gap between sightings at different positions with the object's positions in the hand that held it."""
-    for i in np.flatnonzero(np.diff(track.stamps_ns) >= SHORTEST_GAP_NS)[::-1]:
+    for i in (track.stamps_ns[1:] - track.stamps_ns[:-1] >= SHORTEST_GAP_NS).nonzero()[0][::-1]:
         before_m, after_m = track.positions_m[i : i + 2]
         if np.linalg.norm(after_m - before_m) < settings.moved_m:
             continue
@@ -102,10 +104,9 @@ def _bridge_gaps(track: ObjectTrack, hands: Sequence[HandTrack], settings: Setti
 
 
 def _lost_in_hand(
-    tracks: Sequence[ObjectTrack], hand: HandTrack, end_ns: int, settings: Settings
+    unseen: Sequence[ObjectTrack], tracks: Sequence[ObjectTrack], hand: HandTrack, end_ns: int, settings: Settings
 ) -> tuple[Grasp, ObjectTrack] | None:
     """Find the object that this hand has grasped and that is not seen any more, the nearest of several."""
-    unseen = [track for track in tracks if end_ns - track.stamps_ns[-1] >= SHORTEST_GAP_NS]
     grasps = [(_grasp(track, len(track.stamps_ns) - 1, hand, float(end_ns), settings), track) for track in unseen]
     lost = [(_left_behind(grasp, track, settings), track) for grasp, track in grasps if grasp is not None]
     if not lost:

@@ -16,6 +16,7 @@ from actum.runtime import Client, Received
 from actum_command.commands.recording_options import unread
 from actum_command.commands.terminal import connect, console, errors, fail, failing_on
 from actum_command.describing import OngoingLines, json_line, line
+from actum_command.intent_lines import IntentLines
 
 WATCHABLE = {topic.leaf.removesuffix("/{}"): topic for topic in keys.TOPICS}
 """All topics, by the name that a user gives them."""
@@ -51,6 +52,9 @@ def watch(
 ) -> None:
     """Print live messages, one per line with time, key, segment id and content, until Ctrl-C.
 
+    Of the topic intent, a line is printed when the likeliest object changes, when its probability first passes 0.5 and
+    0.9, and when the reach is over; --json prints every message.
+
     On a terminal, a line at the bottom also shows each person's ongoing action and how complete it is. With --from, the
     command prints the messages of recordings instead, even of those that 'actum record --events' is still writing.
     """
@@ -59,16 +63,17 @@ def watch(
         fail(f"{name!r} is not a topic: use one or more of {', '.join(WATCHABLE)}")
     wanted = [topic for topic in named.values() if topic is not None] or [*BY_DEFAULT]
     wanted += [keys.HELD_BACK] if with_held_back and keys.HELD_BACK not in wanted else []
+    printed = Printed(as_json)
     if recorded:
-        _show_recorded(recorded, wanted, as_json)
+        _show_recorded(recorded, wanted, printed)
         return
     with connect() as client:
         try:
             if console.is_terminal and not as_json and {keys.EVENT, keys.ACTION} & {*wanted}:
-                _show_above_what_goes_on(client, wanted)
+                _show_above_what_goes_on(client, wanted, printed)
             else:
                 for received in _received_on(client, wanted):
-                    _print(received, as_json)
+                    printed.take(received)
         except KeyboardInterrupt:
             return
 
@@ -82,14 +87,22 @@ def _received_on(client: Client, topics: list[keys.Topic]) -> Iterator[Received]
                 yield received
 
 
-def _print(received: Received, as_json: bool) -> None:
-    if as_json:
-        print(json_line(received), flush=True)
-    else:
-        console.print(line(received), soft_wrap=True)
+class Printed:
+    """The lines on the terminal: each message as JSON, or in words those that say something new."""
+
+    def __init__(self, as_json: bool) -> None:
+        self._as_json = as_json
+        self._intents = IntentLines()
+
+    def take(self, received: Received) -> None:
+        """Print a message."""
+        if self._as_json:
+            print(json_line(received), flush=True)
+        elif self._intents.include(received.message):
+            console.print(line(received), soft_wrap=True)
 
 
-def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -> None:
+def _show_recorded(named: list[Path], wanted: list[keys.Topic], printed: Printed) -> None:
     """Print the messages of recordings on the wanted topics, one recording after another by name."""
     found = recording_files(named)
     for remark in found.remarks:
@@ -99,7 +112,7 @@ def _show_recorded(named: list[Path], wanted: list[keys.Topic], as_json: bool) -
     with failing_on(RecordingError):
         for recording in map(Recording, found.paths):
             for message in recording.messages(wanted):
-                _print(Received(keys.key_of(message), message, None, 0), as_json)
+                printed.take(Received(keys.key_of(message), message, None, 0))
             for line_ in unread([recording]):
                 _remark(line_)
 
@@ -109,11 +122,11 @@ def _remark(text: str) -> None:
     errors.print(text, markup=False, soft_wrap=True, style="yellow")
 
 
-def _show_above_what_goes_on(client: Client, wanted: list[keys.Topic]) -> None:
+def _show_above_what_goes_on(client: Client, wanted: list[keys.Topic], printed: Printed) -> None:
     """Print a line for each wanted message but the partial actions; of these show the newest of each person below."""
     ongoing = OngoingLines()
     client.follow(keys.pattern(keys.ACTION, client.sensor), lambda received: ongoing.receive(received.message))
     with Live(ongoing, console=console, transient=True):
         for received in _received_on(client, wanted):
             if not isinstance(received.message, Action) or received.message.final:
-                console.print(line(received), soft_wrap=True)
+                printed.take(received)

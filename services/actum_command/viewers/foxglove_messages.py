@@ -18,7 +18,7 @@ from foxglove.messages import (
 )
 
 from actum import keys
-from actum.messages import Action, Event, Image, Message, Objects, Segment, Skeleton, Truth
+from actum.messages import Action, Event, Image, Intent, Message, Objects, Segment, Skeleton, Truth
 from actum_command.viewers.contents import PIXEL_BYTES, Presence, log_line, misfit
 from actum_command.viewers.foxglove_scene import deleted, of_image, of_object, person, thing, time_of, z_up
 
@@ -40,11 +40,12 @@ CONTENTS: Mapping[str, type] = {
     "segment": Segment,
     "action": Action,
     "event": Event,
+    "intent": Intent,
     "truth": Truth,
     "log": Log,
 }
 """What is put on each topic below a sensor's; colour that is not compressed comes as a `RawImage`, too."""
-AS_JSON = (Segment, Action, Event, Truth)
+AS_JSON = (Segment, Action, Event, Intent, Truth)
 """The messages that Foxglove has no schema for: they go as they are, as JSON."""
 
 

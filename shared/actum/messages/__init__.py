@@ -4,6 +4,7 @@ Units are SI and named in the field where not obvious. Positions are in the sens
 x right, y down, z forward) unless the field says otherwise. Transforms are 4x4, row-major, 16 numbers.
 """
 
+from actum.messages.anticipated import Intended, Intent
 from actum.messages.base import (
     LARGEST_SIDE_PX,
     MOST_ACTIONS,
@@ -54,6 +55,7 @@ MESSAGES: tuple[type[Message], ...] = (
     Action,
     HeldBack,
     Event,
+    Intent,
     Status,
     Info,
     Truth,
@@ -82,6 +84,8 @@ __all__ = [
     "HeldObject",
     "Image",
     "Info",
+    "Intended",
+    "Intent",
     "Intrinsics",
     "JobState",
     "Joint",

@@ -56,9 +56,8 @@ class BridgeService(StepService):
                 thread.join(timeout=ENDING_S)
 
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
-        with self._lock:
-            for foreign in self._bridge.handle(message):
-                self._publishers[foreign.topic].put(foreign.payload)
+        for foreign in self._bridge.handle(message):
+            self._publishers[foreign.topic].put(foreign.payload)
 
     def _read(self, topic: ForeignTopic, subscriber: Subscriber, outbox: Outbox, stop: threading.Event) -> None:
         """Hand on what comes on a foreign topic until the subscriber is undeclared."""

@@ -116,9 +116,12 @@ class Inbox:
         return all(thread.is_alive() for thread in self._threads)
 
     def _drain(self, subscriber: Subscriber, receive: Callable[[zenoh.Sample], None]) -> None:
-        for sample in subscriber:
-            if not self._left_out or _digest(sample) not in self._left_out:
-                receive(sample)
+        for first in subscriber:
+            sample: zenoh.Sample | None = first
+            while sample is not None:
+                if not self._left_out or _digest(sample) not in self._left_out:
+                    receive(sample)
+                sample = subscriber.try_recv()
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ log = logging.getLogger("actum")
 class Service(ABC):
     """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
 
-    def __init__(self, what: Servable, settings: ServiceSettings) -> None:
+    def __init__(self, what: Servable, settings: ServiceSettings, lock: "threading.Lock | None" = None) -> None:
         self.name, counters = what.name, what.counters
         self.failed = self.has_ended = False
         self.is_healthy_beside: Callable[[], bool] = lambda: True
@@ -35,7 +35,7 @@ class Service(ABC):
         self._settings = settings
         self._counters = counters
         self._meter = Meter(self.name, counters, settings)
-        self._lock = threading.Lock()
+        self._lock = lock or threading.Lock()
         self._reporter = Reporter(self._meter, counters, settings, self._lock)
 
     def introduce(self) -> None:

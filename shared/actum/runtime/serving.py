@@ -33,6 +33,10 @@ S = TypeVar("S", bound=ServiceSettings)
 N = TypeVar("N")
 UNUSABLE = 2
 """Exit code of a process whose settings cannot be used."""
+COLLECTION = (5_000, 4, 100)
+"""Objects made before the young are searched for cycles, and how often that is before the older ones and all are. All
+are a million where crowds are watched, and searching them stops the service for a tenth of a second; Python's own
+limits would do that every second."""
 TAKEN = 3
 """Exit code of a process whose service another process runs already."""
 
@@ -179,6 +183,7 @@ def _serve(services: Sequence[Served], settings: ServiceSettings, stop: threadin
         return
     settling_s = SETTLING_S if time.monotonic() - began_s < RETRY_S else RETURNING_S
     gc.freeze()  # objects that exist now live as long as the process: collections need not visit them again
+    gc.set_threshold(*COLLECTION)
     try:
         serve_all(services, session, stop, settling_s)
     except PlaceTakenError as error:

@@ -7,6 +7,7 @@ from collections import OrderedDict
 
 import zenoh
 
+from actum import keys
 from actum.bridge import Bridge
 from actum.codec import DecodeError, decode, origin_of
 from actum.messages import Action, Event, Message
@@ -22,13 +23,16 @@ LONGEST_TICK_NS = 2 * TICK_NS
 meanwhile, before it gives up waiting for it."""
 REMEMBERED = 1024
 """Answers remembered: more than publishers keep for late subscribers on all keys together."""
+_TURN = threading.Lock()
+"""Held by the one service of this process that handles a message now. Threads that work in Python at the same time only
+wait for its lock at every call that gives it away. Images are read outside of it."""
 
 
 class StepService(Service):
     """Gives a pure step the messages of its topics, and ticks; what becomes of its answers a subclass says."""
 
     def __init__(self, step: Node | Bridge, settings: ServiceSettings) -> None:
-        super().__init__(step, settings)
+        super().__init__(step, settings, _TURN if keys.COLOR not in step.inputs else None)
         self._inputs = step.inputs
         self._inbox: Inbox | None = None
         self._repetitions = Repetitions()
@@ -47,7 +51,8 @@ class StepService(Service):
                 now_ns = time.monotonic_ns()
                 tick_ns += min(now_ns - before_ns, LONGEST_TICK_NS)
                 before_ns = now_ns
-                self._step(Tick(tick_ns), outbox)
+                with self._lock:
+                    self._step(Tick(tick_ns), outbox)
         finally:
             self._inbox.close()
 
@@ -60,24 +65,22 @@ class StepService(Service):
         """Handle one sample; bad input is counted, a repetition left out, a bug ends the process."""
         began_ns = time.perf_counter_ns()
         key, payload = str(sample.key_expr), sample.payload.to_bytes()
-        try:
-            message = decode(key, payload, str(sample.encoding))
-        except DecodeError as error:
-            with self._lock:
-                self._counters.reject(error.kind, str(error))
-            return
-        with self._ending_at_a_bug(f"while handling a message on {key}", stop):
-            with self._lock:
+        with self._lock:
+            try:
+                message = decode(key, payload, str(sample.encoding))
                 if self._repetitions.has(message, payload):
                     return
                 self._meter.received(key, message, _origin(sample))
-            self._step(message, outbox)
-            with self._lock:
+                self._step(message, outbox)
                 self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
+            except DecodeError as error:
+                self._counters.reject(error.kind, str(error))
+            except Exception as error:
+                self.end_at_bug(f"while handling a message on {key}", error, stop)
 
     @abstractmethod
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
-        """Let the step handle one message or tick, and put its answers."""
+        """Let the step handle one message or tick, and put its answers; the lock is held."""
 
 
 class NodeService(StepService):
@@ -121,10 +124,9 @@ class NodeService(StepService):
                 self._resumption.report(error)
 
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
-        with self._lock:
-            for output in self._node.handle(message):
-                if self._resumption is None or self._resumption.admits(output):
-                    outbox.put(output)
+        for output in self._node.handle(message):
+            if self._resumption is None or self._resumption.admits(output):
+                outbox.put(output)
 
 
 def _origin(sample: zenoh.Sample) -> str:

@@ -1,8 +1,9 @@
-// What is being done, and what was done last: large enough to read across a room.
+// What is being done, what was done last, and what comes next: large enough to read across a room.
 
 import { colourOf } from "../colours.js";
 import { element, percent } from "../elements.js";
 import { link } from "../link.js";
+import { ahead } from "./ahead.js";
 import { nowNs } from "./people.js";
 
 const GOING_ON_MS = 600;   // early answers come with each frame
@@ -13,6 +14,7 @@ export function now() {
     kicker: element("p", { class: "kicker" }),
     action: element("p", { class: "action" }),
     object: element("p", { class: "object" }),
+    ahead: ahead(),
     done: element("div", { class: "done", role: "progressbar", "aria-label": "Share of the action that is done", "aria-valuemin": "0", "aria-valuemax": "100" }, element("span")),
     spoken: element("p", { class: "spoken", "aria-live": "polite" }),
   };

@@ -1,0 +1,217 @@
+"""How early contacts of hands with objects are foreseen, beside what is simpler; written as Markdown.
+
+python -m benchmarks.intent [DIR] [--only PART]
+
+DIR is the folder of the OptiTrack takes; without it that part is left out.
+"""
+
+import argparse
+import os
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from benchmarks.intent import baselines, cad120, pairs
+from benchmarks.intent.learning import (
+    CAPTURED_WEIGHT,
+    EVERYDAY_WEIGHT,
+    PERSONS,
+    SEED,
+    Examples,
+    background_takes,
+    features_of,
+    learnt,
+)
+from benchmarks.intent.scoring import (
+    ALARM,
+    BEFORE_S,
+    HORIZON_S,
+    PRECISION,
+    Said,
+    before,
+    calibration_error,
+    earliest,
+    false_alarms_per_min,
+)  # fmt: skip
+from benchmarks.intent.takes import LAYOUTS, Take, bare, captured, everyday, simulated, without_body
+from benchmarks.page import measure_page
+
+from action_fusion.intent.contact_network import ContactNetwork, shipped_network
+
+PAGE = Path(__file__).with_name("results.md")
+TESTED, TEST_SEED = range(101, 109), 5
+"""Simulated people from whom nothing was learnt, nor chosen."""
+WATCHED, WATCHED_MIN = range(110, 120), 3.0
+"""Those who do everyday things, and for how long each (minutes)."""
+FOLDS = 5
+"""Parts of the motion capture, of which each is left out of the learning in turn."""
+FOLD_PERSONS = range(1, 9)
+"""Simulated people learnt from beside motion capture: fewer, since it is learnt once for each part."""
+HEAD = (
+    "| | time ahead, median (s) | precision | announced ahead | right "
+    + " | right ".join(f"{s} s before" for s in BEFORE_S)
+    + " | Brier 0.5 s before | time error 0.5 s before (s) |\n|---|---:|---:|---:|"
+    + "---:|" * (len(BEFORE_S) + 2)
+)
+
+
+def said_by(network: ContactNetwork, take: Take) -> Said:
+    """Return what a network says at each frame: each object's probability that either hand touches it."""
+    scores, times_s = [], []
+    for features in features_of(take):
+        foreseen = network.foresee(features)
+        together = foreseen.probability.sum(axis=0)
+        scores.append(together / max(together.sum(), 1.0))
+        nearer = foreseen.probability.argmax(axis=0)
+        times_s.append(np.minimum(foreseen.contact_s[nearer, np.arange(len(nearer))], HORIZON_S))
+    return Said(take, np.array(scores), np.array(times_s))
+
+
+def simpler(training: Sequence[Take]) -> dict[str, baselines.Method]:
+    """Return the baselines by name."""
+    return {
+        "nearest object": baselines.nearest,
+        "constant velocity": baselines.constant_velocity,
+        "minimum jerk": baselines.minimum_jerk,
+        "nearest training path": baselines.of_nearest_path(training),
+        "never": baselines.never,
+    }
+
+
+def compared(ours: Sequence[Said], training: Sequence[Take]) -> Iterator[str]:
+    """Yield a table of ours and the baselines on the same takes."""
+    by_method = {"actum": list(ours)}
+    for name, method in simpler(training).items():
+        by_method[name] = [Said(each.take, method(each.take)) for each in ours]
+    yield "\n".join([HEAD, *(_row(name, said) for name, said in by_method.items())])
+
+
+def _row(name: str, said: Sequence[Said]) -> str:
+    best = earliest(said)
+    then = [before(said, seconds) for seconds in BEFORE_S]
+    at_half = then[BEFORE_S.index(0.5)]
+    probable = at_half.time_error_s == at_half.time_error_s
+    cells = [name, f"{best.median_s:.2f}", f"{best.precision:.2f}", f"{best.recall:.2f}"]
+    cells += [f"{each.right:.2f}" for each in then]
+    cells += [f"{at_half.brier:.2f}", f"{at_half.time_error_s:.2f}"] if probable else ["", ""]
+    return f"| {' | '.join(cells)} |"
+
+
+def of_simulated(_folder: Path | None) -> Iterator[str]:
+    """Yield the tables of simulated people."""
+    network, training = shipped_network(), simulated(FOLD_PERSONS, SEED)
+    said = [said_by(network, take) for take in simulated(TESTED, TEST_SEED)]
+    yield (
+        f"{len(TESTED)} people from whom nothing was learnt, {len(LAYOUTS)} takes each, joints with the noise of a "
+        f"Kinect; {sum(len(each.take.contacts) for each in said)} contacts."
+    )
+    for count in sorted({objects for objects, _ in LAYOUTS}):
+        yield f"### {count} objects"
+        yield from compared([each for each in said if len(each.take.objects_m) == count], training)
+    yield f"Expected calibration error of the object's probability, all takes: {calibration_error(said):.3f}."
+
+
+def of_captured(folder: Path | None) -> Iterator[str]:
+    """Yield the table of motion capture, takes left out in turn."""
+    if folder is None:
+        yield "Not run: the folder was not given."
+        return
+    takes, said = captured(folder), []
+    acting = [*map(without_body, simulated(FOLD_PERSONS, SEED)), *bare(FOLD_PERSONS, SEED)]
+    background = map(without_body, background_takes()[::3])
+    others = [Examples.of(acting), Examples.of(background, EVERYDAY_WEIGHT)]
+    of_takes = [Examples.of([take], CAPTURED_WEIGHT) for take in takes]
+    for fold in range(FOLDS):
+        rest = [each for number, each in enumerate(of_takes) if number % FOLDS != fold]
+        network = learnt(Examples.joined([*others, *rest]))
+        said += [said_by(network, take) for take in takes[fold::FOLDS]]
+    yield (
+        f"{len(takes)} takes of one person, hands and three objects; each fifth is left out of the learning in turn. "
+        f"{sum(len(each.take.contacts) for each in said)} contacts: first motions after a labelled approach, or its "
+        "end. The nearest training path is one of simulated people."
+    )
+    yield from compared(said, acting)
+    yield f"Expected calibration error: {calibration_error(said):.3f}."
+
+
+def of_everyday(_folder: Path | None) -> Iterator[str]:
+    """Yield how often a contact is announced that does not come."""
+    said = [said_by(shipped_network(), take) for take in everyday(WATCHED, TEST_SEED, WATCHED_MIN)]
+    minutes = sum(each.take.minutes for each in said)
+    yield (
+        f"{minutes:.0f} minutes of {len(WATCHED)} people who do everyday things at the table, with three actions each. "
+        f"False alarms (probability of {ALARM} or more, and no contact with that object within {HORIZON_S} s): "
+        f"**{false_alarms_per_min(said):.2f} a minute**. Calibration error: {calibration_error(said):.3f}."
+    )
+
+
+def of_pairs(_folder: Path | None) -> Iterator[str]:
+    """Yield how rightly action and object are said together, through the services' steps."""
+    yield from pairs.table(TESTED, TEST_SEED)
+
+
+def of_cad120(folder: Path | None) -> Iterator[str]:
+    """Yield the table of reaches whose objects are known by their boxes alone."""
+    near = None if folder is None else folder.with_name("cad120")
+    yield from ["Not run: there is no such folder."] if near is None or not near.is_dir() else cad120.table(near)
+
+
+def of_cost(_folder: Path | None) -> Iterator[str]:
+    """Yield what a posture costs with eight objects."""
+    network, [take] = shipped_network(), everyday(WATCHED[:1], TEST_SEED, 1.0)
+    eight = {number: take.objects_m[1 + number % 3] + 0.1 * number for number in range(8)}
+    busy = Take(take.name, take.stamps_ns, take.arms_m, eight, [])
+    began_s = time.perf_counter()
+    said_by(network, busy)
+    each_s = (time.perf_counter() - began_s) / len(busy.stamps_ns)
+    yield (
+        f"{1e3 * each_s:.2f} ms for a posture with eight objects; four people at 30 frames/s take "
+        f"{100 * 4 * 30 * each_s:.0f} % of a core."
+    )
+
+
+PARTS: Mapping[str, tuple[str, Callable[[Path | None], Iterator[str]]]] = {
+    "simulated": ("Simulated people", of_simulated),
+    "captured": ("Motion capture", of_captured),
+    "everyday": ("Everyday things", of_everyday),
+    "cad120": ("Reaches among boxes", of_cad120),
+    "pairs": ("Action and object together", of_pairs),
+    "cost": ("Cost", of_cost),
+}
+
+
+def header() -> Iterator[str]:
+    """Say what is measured."""
+    yield "# Contacts foreseen"
+    yield (
+        "`make bench-intent`: which object a hand will touch, and when. A contact is the object's first motion (5 mm); "
+        "of one that does not move, the end of the labelled approach or of the reach with which somebody points at it. "
+        "What is said counts from the frame in which it is computed. *Time ahead*: how long before each contact its "
+        f"object is announced, at the earliest threshold at which {PRECISION:.0%} of the announcements are right; a "
+        "contact that is not announced counts as 0. An announcement is right if its object is touched within "
+        f"{HORIZON_S} s. *Right*: the share of contacts whose likeliest object was the right one so long before. "
+        f"The network was learnt from other simulated people ({len(PERSONS)}) and, as it comes with actum, from the "
+        "motion capture."
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="benchmarks.intent", description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?", metavar="DIR")
+    parser.add_argument("--only", choices=PARTS, metavar="PART")
+    given = parser.parse_args()
+    data = os.environ.get("ACTUM_DATA")
+    folder = given.folder or (Path(data) / "bimacs_optitrack" if data else None)
+    measure_page(PAGE, given.only, header(), PARTS, partial(section, folder))
+
+
+def section(folder: Path | None, part: str) -> str:
+    """Measure one part."""
+    title, measure = PARTS[part]
+    return "\n\n".join([f"## {title}", *measure(folder)])
+
+
+if __name__ == "__main__":
+    main()

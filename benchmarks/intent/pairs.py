@@ -1,0 +1,111 @@
+"""Action and object together: simulated people through preprocessor, classifier and fusion, their actions marked."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from benchmarks.intent.scoring import BEFORE_S
+from benchmarks.intent.takes import LAYOUTS, OBJECT_SD_M, TAIL_S, Contact, contacts_of, scene_of
+
+from action_fusion.node import ActionFusion
+from action_fusion.settings import Settings as FusionSettings
+from actum.messages import Intent, Message, Objects, Segment, TrackedObject
+from actum.node import SECOND_NS
+from actum_command.simulated_model import SIMULATED_MODEL
+from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
+from scene_simulator.simulated_scene import Scene, SceneState
+from scene_simulator.simulator import Simulator, labelled_stream
+from som_classifier.model_loading import load_model
+from som_classifier.node import SomClassifier
+
+BINS = 10
+"""Of the calibration."""
+LEAST = 0.05
+"""Pairs that are less probable are not counted in the calibration."""
+HORIZON_S = 1.5
+"""A pair is right if that action touches that object within so long (s)."""
+
+
+class ArrangedSimulator(Simulator):
+    """The simulated scene with other objects at other places."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._arranged = scene
+        super().__init__(scene.programme, *scene.seeds, image_hz=0, tail_s=TAIL_S)
+        self.scene = scene
+
+
+def table(persons: Sequence[int], seed: int) -> Iterator[str]:
+    """Yield what is said before the contacts of these people, and how well its probabilities hold."""
+    scenes = [scene_of(person, seed, *layout) for person in persons[:4] for layout in (LAYOUTS[1], LAYOUTS[3])]
+    said = [_watched(scene) for scene in scenes]
+    count = sum(len(contacts) for contacts, _ in said)
+    yield f"{count} contacts; the model is the one of the simulated scene that comes with actum."
+    rows = [f"| {seconds} | {_right(said, seconds):.2f} |" for seconds in BEFORE_S]
+    yield "\n".join(["| before the contact (s) | likeliest action and object right |", "|---:|---:|", *rows])
+    yield f"Expected calibration error of the pair's probability: {_calibration_error(said):.3f}."
+
+
+def _watched(scene: Scene) -> tuple[list[Contact], list[Intent]]:
+    states = list(scene.states(TAIL_S))
+    preprocessor, fusion = PosePreprocessor(PoseSettings.defaults()), ActionFusion(FusionSettings())
+    classifier = SomClassifier(load_model(SIMULATED_MODEL))
+    intents: list[Intent] = []
+    for message in _captured(scene, states):
+        postures = list(preprocessor.handle(message))
+        marked: list[Message] = [message] if isinstance(message, Segment) else postures
+        actions = [action for each in marked for action in classifier.handle(each)]
+        seen = [message] if isinstance(message, Objects) else [*postures, *actions]
+        intents += [put for each in seen for put in fusion.handle(each) if isinstance(put, Intent)]
+    return list(contacts_of(scene, states)), intents
+
+
+def _captured(scene: Scene, states: Sequence[SceneState]) -> Iterator[Message]:
+    """Yield skeletons, marks, and the objects of every second frame with a tracker's noise."""
+    simulator, rng = ArrangedSimulator(scene), np.random.default_rng(scene.seeds)
+    stream = [m for m in labelled_stream(simulator) if m.stamp_ns is not None]
+    for state in states[::2]:
+        found = [
+            TrackedObject(
+                id=item.id,
+                name=item.name,
+                position_m=(place_m + rng.normal(0, OBJECT_SD_M, 3)).tolist(),
+                quaternion_xyzw=[0.0, 0.0, 0.0, 1.0],
+                confidence=1.0,
+                seen=True,
+            )
+            for item, place_m in zip(scene.items, state.positions_m, strict=True)
+        ]
+        stamp_ns = simulator.stamp_ns(state.frame)
+        session = stream[0].session_id if hasattr(stream[0], "session_id") else ""
+        stream.append(Objects(stamp_ns=stamp_ns, sensor="kinect0", objects=found, session_id=session))
+    yield from sorted(stream, key=lambda message: message.stamp_ns or 0)
+
+
+def _right(said: Sequence[tuple[list[Contact], list[Intent]]], seconds: float) -> float:
+    right = []
+    for contacts, intents in said:
+        for contact in contacts:
+            at_ns = contact.stamp_ns - round(seconds * SECOND_NS)
+            last = [intent for intent in intents if intent.stamp_ns <= at_ns][-1:]
+            named = (each for intent in last for each in intent.intended if each.action is not None)
+            first = next(named, None)
+            right.append(first is not None and (first.object_id, first.action) == (contact.number, contact.action))
+    return float(np.mean(right))
+
+
+def _calibration_error(said: Sequence[tuple[list[Contact], list[Intent]]]) -> float:
+    told, came = [], []
+    for contacts, intents in said:
+        for intent in intents:
+            for each in (one for one in intent.intended if one.action is not None and one.probability > LEAST):
+                left_s = [
+                    (contact.stamp_ns - intent.stamp_ns) / SECOND_NS
+                    for contact in contacts
+                    if (contact.number, contact.action) == (each.object_id, each.action)
+                ]
+                told.append(each.probability)
+                came.append(any(0 < left <= HORIZON_S for left in left_s))
+    probability, right = np.array(told), np.array(came)
+    in_bin = [np.minimum((probability * BINS).astype(int), BINS - 1) == k for k in range(BINS)]
+    return float(sum(abs(probability[k].mean() - right[k].mean()) * k.mean() for k in in_bin if k.any()))

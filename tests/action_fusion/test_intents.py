@@ -1,0 +1,129 @@
+"""What an intent says: nothing of what comes later, the same whatever came first, and calibrated from the start."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from action_fusion.intake.stream_samples import ObjectsSample
+from action_fusion.intent.approach import FEATURES, approach
+from action_fusion.intent.contact_network import ContactNetwork, shipped_network
+from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_place
+from action_fusion.intent.recent_paths import ARMS, OBJECTS_LATE_NS, RecentArms, RecentObjects
+from action_fusion.node import ActionFusion
+from action_fusion.settings import Settings
+from actum.messages import Action, Message, Objects
+from actum.node import SECOND_NS
+from fused import intents_of
+from scenes import FRAME_NS, acting_on, action
+
+REACH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65), others={2: (-0.4, 0.0, 0.5)})
+
+
+def stream(end_s: float = 1.2) -> list[Message]:
+    messages = [*REACH.postures(-0.5, end_s), *REACH.sightings(-0.5, end_s)]
+    return sorted(messages, key=lambda message: message.stamp_ns or 0)
+
+
+def straight(arms: RecentArms, towards: np.ndarray, speed_mps: float, seconds: float = 0.9) -> int:
+    """Move both hands straight from the origin, elbows and shoulders still; return the last stamp (ns)."""
+    stamp_ns = 0
+    for frame in range(round(seconds * 30) + 1):
+        stamp_ns = frame * FRAME_NS
+        joints_m = np.zeros((len(ARMS), 3))
+        joints_m[:2] = towards * speed_mps * stamp_ns / SECOND_NS
+        arms.append(stamp_ns, joints_m)
+    return stamp_ns
+
+
+def seen(stamp_ns: int, **places: tuple[float, float, float]) -> ObjectsSample:
+    numbered = {number: np.array(place) for number, place in enumerate(places.values(), start=1)}
+    return ObjectsSample(stamp_ns, "", numbered, dict(zip(numbered, places, strict=True)), frozenset(), {})
+
+
+def test_a_straight_way_leads_towards_its_goal_and_not_aside() -> None:
+    arms, objects = RecentArms(), RecentObjects()
+    objects.append(seen(0, ahead=(0.0, 0.0, 2.0), aside=(2.0, 0.0, 0.0)))
+    at_ns = straight(arms, np.array([0.0, 0.0, 1.0]), speed_mps=0.5)
+    found = approach(arms, objects, at_ns)
+    assert found.names == {1: "ahead", 2: "aside"}
+    assert found.features.shape == (2, 2, FEATURES)
+    way_m = 0.5 * 0.8
+    np.testing.assert_allclose(
+        found.features[0, :, 0], np.linalg.norm([[0, 0, 1.55], [2, 0, -0.45]], axis=1), atol=0.01
+    )
+    assert found.features[0, 0, 5] == pytest.approx(way_m, abs=0.02)
+    assert found.features[0, 0, 9] == pytest.approx(0.0, abs=1e-6)
+    assert found.features[0, 1, 9] > 0.9 * way_m
+
+
+def test_an_object_counts_where_it_was_a_tenth_of_a_second_ago() -> None:
+    objects = RecentObjects()
+    objects.append(seen(0, cup=(0.0, 0.0, 1.0)))
+    objects.append(seen(SECOND_NS, cup=(0.0, 0.0, 2.0)))
+    for stamp_ns, place_m in ((SECOND_NS + OBJECTS_LATE_NS - 1, 1.0), (SECOND_NS + OBJECTS_LATE_NS, 2.0)):
+        assert objects.at(stamp_ns, 0)[1][0, 0, 2] == place_m
+    assert objects.at(OBJECTS_LATE_NS - 1, 0)[0] == {}
+
+
+def test_what_was_not_seen_for_ten_seconds_is_nowhere() -> None:
+    objects = RecentObjects()
+    objects.append(seen(0, cup=(0.0, 0.0, 1.0)))
+    assert objects.at(10 * SECOND_NS, 0)[0] == {1: "cup"}
+    assert objects.at(10 * SECOND_NS + 1, 0)[0] == {}
+
+
+@given(cut=st.integers(2, 80))
+@settings(max_examples=20, deadline=None)
+def test_an_intent_depends_on_nothing_later(cut: int) -> None:
+    messages = stream()
+    whole = intents_of(ActionFusion(Settings()), *messages)
+    part = intents_of(ActionFusion(Settings()), *messages[:cut])
+    assert part == whole[: len(part)]
+
+
+@given(objects_late_ns=st.integers(0, OBJECTS_LATE_NS - 1), action_late_ns=st.integers(0, ACTIONS_LATE_NS - 1))
+@settings(max_examples=20, deadline=None)
+def test_objects_and_actions_that_come_up_to_a_tenth_of_a_second_late_change_no_intent(
+    objects_late_ns: int, action_late_ns: int
+) -> None:
+    late_ns = {Objects: objects_late_ns, Action: action_late_ns}
+    partials = [action("lift", 0.0, s, final=False, completeness=s, confidence=0.5) for s in (0.2, 0.3, 0.4)]
+    captured = sorted([*stream(), *partials], key=lambda message: message.stamp_ns or 0)
+    arriving = sorted(captured, key=lambda message: (message.stamp_ns or 0) + late_ns.get(type(message), 0))
+    said = intents_of(ActionFusion(Settings()), *captured)
+    assert any(each.segment_id for each in said)
+    assert intents_of(ActionFusion(Settings()), *arriving) == said
+
+
+@given(features=st.lists(st.floats(-1e3, 1e3), min_size=2 * 3 * FEATURES, max_size=2 * 3 * FEATURES))
+@settings(max_examples=50, deadline=None)
+def test_of_each_hand_the_probabilities_sum_to_1_at_most_whatever_is_seen(features: list[float]) -> None:
+    foreseen = shipped_network().foresee(np.array(features).reshape(2, 3, FEATURES))
+    assert (foreseen.probability >= 0).all()
+    assert (foreseen.probability.sum(axis=1) <= 1 + 1e-9).all()
+    assert (foreseen.contact_s > 0).all()
+
+
+def test_a_hand_that_is_not_known_touches_nothing() -> None:
+    features = np.zeros((2, 2, FEATURES))
+    features[1] = np.nan
+    foreseen = shipped_network().foresee(features)
+    assert (foreseen.probability[1] == 0).all()
+
+
+def test_without_objects_nothing_is_foreseen() -> None:
+    assert shipped_network().foresee(np.zeros((2, 0, FEATURES))).probability.shape == (2, 0)
+
+
+def test_the_order_of_the_objects_does_not_matter() -> None:
+    rng = np.random.default_rng(0)
+    network: ContactNetwork = shipped_network()
+    features = network.mean + network.sd * rng.normal(size=(2, 4, FEATURES))
+    turned = network.foresee(features[:, ::-1])
+    np.testing.assert_allclose(turned.probability[:, ::-1], network.foresee(features).probability, rtol=1e-12)
+
+
+def test_a_hand_touches_a_thing_at_its_own_side_and_stays_where_it_is_once_there() -> None:
+    np.testing.assert_allclose(touched_place(np.array([0.0, 0.0, 1.0]), np.zeros(3)), [0.0, 0.0, 0.12])
+    np.testing.assert_allclose(touched_place(np.array([0.0, 0.0, 0.1]), np.zeros(3)), [0.0, 0.0, 0.1])
