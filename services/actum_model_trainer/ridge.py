@@ -62,30 +62,30 @@ class DualForm(NamedTuple):
     """What axes in the span of n vectors are sought from.
 
     Attributes:
+        vectors: (n, inputs).
         mean: (inputs,), of the vectors.
-        centred: (n, inputs), the vectors less their mean.
         penalty: of the squared axes.
-        products: (n, n), the inner products of the centred vectors, with the penalty on their diagonal.
+        products: (n, n), the inner products of the vectors less their mean, with the penalty on their diagonal.
     """
 
+    vectors: NDArray[np.float32]
     mean: NDArray[np.float32]
-    centred: NDArray[np.float32]
     penalty: float
     products: Array
 
     @classmethod
     def of(cls, vectors: NDArray[np.float32], shrinkage: float) -> "DualForm":
-        """Centre vectors (n, inputs). The penalty is `shrinkage` times the mean squared length that is left of them."""
+        """Multiply vectors (n, inputs) less their mean; the penalty is `shrinkage` times their mean squared length."""
         mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
-        centred = vectors - mean
-        products = inner_products(centred)
+        products = inner_products(vectors - mean)
         penalty = shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
         products.ravel()[:: len(products) + 1] += penalty
-        return cls(mean, centred, penalty, products)
+        return cls(vectors, mean, penalty, products)
 
     def fitted(self, dual: Array, intercept: Array) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Return the axes (inputs, actions) and offsets (actions,) of weights of the vectors (n, actions)."""
-        axes: NDArray[np.float32] = self.centred.T @ dual.astype(np.float32)
+        axes = self.vectors.T @ dual.astype(np.float32)
+        axes -= np.outer(self.mean, dual.sum(axis=0)).astype(np.float32)
         return axes, (intercept - self.mean @ axes).astype(np.float32)
 
 

@@ -37,10 +37,8 @@ from som_classifier.spotting.spotting_preset import SpottingPreset
 
 COARSE = 2
 """Intervals between two looks for false alarms to learn from: they last longer, and looking takes most of the time."""
-FIRST_WINDOWS = 3000
-"""Windows that the first heads learn from: they only look for false alarms; n windows cost n³."""
 FIRST_VARIANTS = 2
-"""Of each of these windows, at most."""
+"""Variants of each window that the first heads learn from: they only look for false alarms; n windows cost n³."""
 SHORTEST_S = 0.2
 """Shortest window (s): a shorter movement is a twitch."""
 MIN_LOG_DURATION_SD = 0.15
@@ -92,10 +90,11 @@ def _with_false_alarms(
 ) -> list[TrainingWindows]:
     """Add windows about what heads that are trained on the others take for actions in background."""
     search = preset.spotting
-    few = min(search.most_windows, FIRST_WINDOWS, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
+    few = min(search.most_windows, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
     less_varied = replace(preset, spotting=replace(search, most_windows=few))
-    rows = window_rows(model, streams, windows, folds, less_varied, rng, progress)
-    of_others = rows.heads(range(folds.count), search.shrinkage)
+    of_others = window_rows(model, streams, windows, folds, less_varied, rng, progress).heads(
+        range(folds.count), search.shrinkage
+    )
     coarse = untuned.model_copy(update={"interval_s": COARSE * search.interval_s})
     answered = _mixed(scanned(model, streams, of_others, folds, coarse, progress), search.common_shares[0])
     searching = SpottingModel(of_others[0], untuned)

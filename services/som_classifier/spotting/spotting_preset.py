@@ -15,8 +15,7 @@ class SpottingPreset:
         windows: how many durations of windows there are.
         shortest_quantile: of the training segments' durations, the shortest window; the longest is at one minus this.
         shrinkage: of the heads, in units of the mean squared length of the pooled vectors.
-        most_windows: training windows; more make the heads hardly better, and their training costs n³. As many more may
-            lie about false alarms.
+        most_windows: training windows; more make the heads hardly better, and their training costs n³.
         common_shares: of the head that all actions have in common; one is chosen by cross-validation.
         folds: of cross-validation, by people.
         thresholds: completeness at which recall and false alarms are counted, rising.
