@@ -4,6 +4,7 @@ Ridge regression on coordinates costs a fraction of that on vectors, and coordin
 model file, so that actions can be added to it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,7 +41,12 @@ class Basis:
     @classmethod
     def of(cls, vectors: Floats32, rank: int) -> "Basis":
         """Find the principal directions of vectors (n, inputs), at most `rank`."""
-        landmarks = _spread(vectors, rank)
+        return cls.of_all([vectors], rank)
+
+    @classmethod
+    def of_all(cls, parts: Sequence[Floats32], rank: int) -> "Basis":
+        """Find the principal directions of the vectors (n, inputs) of all parts, at most `rank`."""
+        landmarks = _spread(parts, rank)
         mean = landmarks.mean(axis=0, dtype=np.float64).astype(np.float32)
         return cls(mean, _principal(landmarks - mean, rank))
 
@@ -49,7 +55,7 @@ class Basis:
 
         What they have is projected out twice: once leaves so much by rounding that directions would not be orthogonal.
         """
-        beside = centred = _spread(vectors, most) - self.mean
+        beside = centred = _spread([vectors], most) - self.mean
         for _ in range(2):
             beside = beside - (beside @ self.directions) @ self.directions.T
         least = LEAST_NEW_SHARE * float(np.square(centred, dtype=np.float64).sum())
@@ -61,7 +67,9 @@ class Basis:
 
     def coordinates(self, vectors: Floats32) -> Floats32:
         """Return the coordinates (n, rank) of vectors (n, inputs)."""
-        return (vectors @ self.directions - self.mean @ self.directions).astype(np.float32)
+        coordinates: Floats32 = vectors @ self.directions
+        coordinates -= self.mean @ self.directions
+        return coordinates
 
     def moved(self, coordinates: Floats32, to: "Basis") -> Floats32:
         """Return coordinates (n, rank) as coordinates in another basis."""
@@ -77,9 +85,13 @@ class Basis:
         return (of_coordinates - self.mean @ axes).astype(np.float32)
 
 
-def _spread(vectors: Floats32, rank: int) -> Floats32:
-    """Return some of the vectors, spread evenly, to find so many directions from."""
-    return vectors[np.linspace(0, len(vectors) - 1, min(len(vectors), LANDMARKS * rank)).round().astype(np.intp)]
+def _spread(parts: Sequence[Floats32], rank: int) -> Floats32:
+    """Return some of the vectors of all parts, spread evenly, to find so many directions from."""
+    count = sum(map(len, parts))
+    numbers = np.linspace(0, count - 1, min(count, LANDMARKS * rank)).round().astype(np.intp)
+    ends = np.cumsum([len(part) for part in parts])
+    within = np.split(numbers, np.searchsorted(numbers, ends[:-1]))
+    return np.concatenate([part[own - end + len(part)] for part, own, end in zip(parts, within, ends, strict=True)])
 
 
 def _principal(centred: NDArray[np.floating[Any]], most: int, least: float = 0.0) -> Floats32:

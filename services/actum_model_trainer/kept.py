@@ -93,8 +93,8 @@ def reduced(data: TrainingData) -> TrainingData:
     """Return training data with coordinates in the place of vectors."""
     if data.pooled_basis is not None:
         return data
-    pooled = Basis.of(np.concatenate([*(stage.vectors for stage in data.stages), data.background]), RANK)
-    features = Basis.of(np.concatenate([data.convolved.taught, data.convolved.background]), RANK)
+    pooled = Basis.of_all([*(stage.vectors for stage in data.stages), data.background], RANK)
+    features = Basis.of_all([data.convolved.taught, data.convolved.background], RANK)
     return replace(
         data,
         stages=[stage._replace(vectors=pooled.coordinates(stage.vectors)) for stage in data.stages],

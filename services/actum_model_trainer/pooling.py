@@ -14,7 +14,7 @@ from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import SegmentSample
 from som_classifier.first_layer import FirstMaps
 from som_classifier.frame_activity import UM_PER_M
-from som_classifier.pyramid import PrefixSums, Pyramid, running_sums
+from som_classifier.pyramid import PrefixSums, Pyramid
 
 
 class PooledVectors(NamedTuple):
@@ -66,61 +66,76 @@ class Pooling:
             beside: how many samples were pooled before, which count in the thinning out.
             progress: of the pooling.
         """
-        rows = [Rows(self.basis) for _ in stages]
-        of_row: list[list[tuple[int, int]]] = [[] for _ in stages]
+        chosen = [_chosen(variants, fractions, beside + len(samples)) for fractions in stages]
+        rows = [Rows(self.basis, self._inputs, sum(map(len, of_stage))) for of_stage in chosen]
         for index, (sample, of_sample) in enumerate(zip(samples, variants, strict=True)):
             progress("pooling of examples", index, len(samples))
             sums = _VariantSums(self, sample, of_sample)
-            for stage, fractions in enumerate(stages):
-                pairs = list(product(fractions, range(len(of_sample))))
-                step = min(-(-(beside + len(samples)) * len(pairs) // MAX_VECTORS), len(pairs))
-                for fraction, variant in pairs[index % step :: step]:
-                    rows[stage].append(self._pyramid.vector(sums.until(variant, fraction)))
-                    of_row[stage].append((index, variant))
+            for of_stage, own in zip(chosen, rows, strict=True):
+                for fraction, variant in of_stage[index]:
+                    self._pool(sums.until(variant, fraction), own.room())
         progress("pooling of examples", len(samples), len(samples))
         return [
-            PooledVectors(vectors.stacked(), *np.array(indices).T)
-            for vectors, indices in zip(rows, of_row, strict=True)
+            PooledVectors(own.filled(), *np.array([(n, v) for n, each in enumerate(of_stage) for _, v in each]).T)
+            for own, of_stage in zip(rows, chosen, strict=True)
         ]
 
     def of_background(
         self, windows: Sequence[SegmentSample], variants: Sequence[Sequence[Variant]]
     ) -> NDArray[np.float32]:
         """Return the vectors (windows, inputs) of movement that nobody taught, each of its only variant."""
-        if not windows:
-            inputs = self._pyramid.cells * self.first.units if self.basis is None else self.basis.rank
-            return np.zeros((0, inputs), np.float32)
-        rows = Rows(self.basis)
+        rows = Rows(self.basis, self._inputs, len(windows))
         for window, of_window in zip(windows, variants, strict=True):
-            rows.append(self._pyramid.vector(_VariantSums(self, window, of_window).until(0, 1.0)))
-        return rows.stacked()
+            self._pool(_VariantSums(self, window, of_window).until(0, 1.0), rows.room())
+        return rows.filled()
+
+    @property
+    def _inputs(self) -> int:
+        return self._pyramid.cells * self.first.units
+
+    def _pool(self, sums: PrefixSums, out: NDArray[np.float32]) -> None:
+        self._pyramid.pool(sums, np.array([[0, len(sums)]]), out)
+
+
+def _chosen(
+    variants: Sequence[Sequence[Variant]], fractions: Sequence[float], samples: int
+) -> list[list[tuple[float, int]]]:
+    """Return the shares and variants of each sample of which one stage has vectors, thinned out evenly."""
+    chosen = []
+    for index, of_sample in enumerate(variants):
+        pairs = list(product(fractions, range(len(of_sample))))
+        step = min(-(-samples * len(pairs) // MAX_VECTORS), len(pairs))
+        chosen.append(pairs[index % step :: step])
+    return chosen
 
 
 class Rows:
-    """Collects vectors (inputs,), or their coordinates in a basis: then only a few vectors are held at once."""
+    """Room for vectors (n, inputs), or for their coordinates in a basis: then only a few vectors are held at once."""
 
-    def __init__(self, basis: Basis | None) -> None:
-        self._basis = basis
-        self._vectors: list[NDArray[np.float32]] = []
-        self._coordinates: list[NDArray[np.float32]] = []
+    def __init__(self, basis: Basis | None, inputs: int, count: int) -> None:
+        self._basis, self._written, self._reduced = basis, 0, 0
+        self._vectors = np.empty((count if basis is None else min(count, CHUNK), inputs), np.float32)
+        self._coordinates = np.empty((0 if basis is None else count, 0 if basis is None else basis.rank), np.float32)
 
-    def append(self, vector: NDArray[np.float32]) -> None:
-        """Add a vector."""
-        self._vectors.append(vector)
-        if self._basis is not None and len(self._vectors) == CHUNK:
-            self._reduce(self._basis)
+    def room(self) -> NDArray[np.float32]:
+        """Return the room for the next vector, (1, inputs)."""
+        if self._written == len(self._vectors):
+            self._reduce()
+        self._written += 1
+        return self._vectors[self._written - 1 : self._written]
 
-    def stacked(self) -> NDArray[np.float32]:
+    def filled(self) -> NDArray[np.float32]:
         """Return all, (n, inputs) or (n, rank)."""
         if self._basis is None:
-            return np.stack(self._vectors)
-        if self._vectors:
-            self._reduce(self._basis)
-        return np.concatenate(self._coordinates)
+            return self._vectors
+        self._reduce()
+        return self._coordinates
 
-    def _reduce(self, basis: Basis) -> None:
-        self._coordinates.append(basis.coordinates(np.stack(self._vectors)))
-        self._vectors.clear()
+    def _reduce(self) -> None:
+        assert self._basis is not None
+        after = self._reduced + self._written
+        self._coordinates[self._reduced : after] = self._basis.coordinates(self._vectors[: self._written])
+        self._reduced, self._written = after, 0
 
 
 class _VariantSums:
@@ -144,10 +159,10 @@ class _VariantSums:
         if (variant, same_arm) not in self._sums:
             as_read = self._variants[variant]
             sums = summed_activities(self._first, as_read if same_arm else as_read.mirrored)
-            self._sums[variant, same_arm] = PrefixSums(list(sums), self._travelled_um)
+            self._sums[variant, same_arm] = PrefixSums(sums, self._travelled_um)
         return self._sums[variant, same_arm].between(0, frames)
 
 
 def summed_activities(first: FirstMaps, variant: Variant) -> NDArray[np.uint32]:
     """Return the sums of the activity before each of a variant's n frames, and after the last, (n + 1, channels)."""
-    return running_sums(first.activities(variant.postures, variant.velocities))
+    return first.running_sums(variant.postures, variant.velocities)

@@ -7,12 +7,13 @@ anew where rows are left out.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Floats, Indices
+from actum.arrays import Array, Indices
+from actum_model_trainer.products import inner_products, inverse_root
 
 SMALLEST_LENGTH2 = 1e-9
 """Squared length of vectors: the penalty must not be 0 where all are the same."""
@@ -57,41 +58,61 @@ def ridge(vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> 
     return form(vectors, indicators, shrinkage)
 
 
-def dual_form(
-    vectors: NDArray[np.float32], shrinkage: float
-) -> tuple[NDArray[np.float32], NDArray[np.float32], Array, float]:
-    """Return the mean (inputs,) of vectors (n, inputs), the centred vectors, their inner products (n, n), the penalty.
+class DualForm(NamedTuple):
+    """What axes in the span of n vectors are sought from.
 
-    The penalty is `shrinkage` times the mean squared length of the centred vectors.
+    Attributes:
+        vectors: (n, inputs).
+        mean: (inputs,), of the vectors.
+        penalty: of the squared axes.
+        products: (n, n), the inner products of the vectors less their mean, with the penalty on their diagonal.
     """
-    mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
-    centred = vectors - mean
-    products = (centred @ centred.T).astype(np.float64)
-    return mean, centred, products, shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
+
+    vectors: NDArray[np.float32]
+    mean: NDArray[np.float32]
+    penalty: float
+    products: Array
+
+    @classmethod
+    def of(cls, vectors: NDArray[np.float32], shrinkage: float) -> "DualForm":
+        """Multiply vectors (n, inputs) less their mean; the penalty is `shrinkage` times their mean squared length."""
+        mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
+        products = inner_products(vectors - mean)
+        penalty = shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
+        products.ravel()[:: len(products) + 1] += penalty
+        return cls(vectors, mean, penalty, products)
+
+    def fitted(self, dual: Array, intercept: Array) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """Return the axes (inputs, actions) and offsets (actions,) of weights of the vectors (n, actions)."""
+        axes = self.vectors.T @ dual.astype(np.float32)
+        axes -= np.outer(self.mean, dual.sum(axis=0)).astype(np.float32)
+        return axes, (intercept - self.mean @ axes).astype(np.float32)
 
 
 class DualRidge:
-    """The axes are sought in the span of the vectors, so that one inverse of their inner products serves all folds."""
+    """The axes are sought in the span of the vectors, so that one inverse of their inner products serves all folds.
+
+    Of the inverse, only its root W is held: Wᵀ W is the inverse, and any block of it the product of columns of W.
+    """
 
     def __init__(self, vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> None:
-        mean, centred, products, penalty = dual_form(vectors, shrinkage)
-        self._indicators = indicators
-        self._inverse: Floats = np.linalg.inv(products + penalty * np.eye(len(products)))
+        form = DualForm.of(vectors, shrinkage)
+        self._indicators, self._root = indicators, inverse_root(form.products)
         intercept: Array = indicators.mean(axis=0)
-        dual = self._inverse @ (indicators - intercept)
-        self.axes: NDArray[np.float32] = centred.T @ dual.astype(np.float32)
-        self.offsets: NDArray[np.float32] = (intercept - mean @ self.axes).astype(np.float32)
-        self.scores: Array = products @ dual + intercept
+        self._dual: Array = self._root.T @ (self._root @ (indicators - intercept))
+        self.axes, self.offsets = form.fitted(self._dual, intercept)
+        self.scores: Array = indicators - form.penalty * self._dual
 
     def held_out(self, rows: Indices) -> Array:
         """Return the scores (rows, actions) by a regression that was fitted to all other rows.
 
         By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted.
         """
-        fitted = np.delete(np.arange(len(self._indicators)), rows)
-        intercept: Array = self._indicators[fitted].mean(axis=0)
-        product = self._inverse[np.ix_(rows, fitted)] @ (self._indicators[fitted] - intercept)
-        scores: Array = intercept - np.linalg.solve(self._inverse[np.ix_(rows, rows)], product)
+        others = np.ones((len(self._indicators), 1), dtype=bool)
+        others[rows] = False
+        intercept: Array = self._indicators.mean(axis=0, where=others) if others.any() else np.zeros(len(self.offsets))
+        targets, own = np.where(others, self._indicators - intercept, 0.0), self._root[:, rows]
+        scores: Array = intercept - np.linalg.solve(own.T @ own, own.T @ (self._root @ targets))
         return scores
 
     def each_left_out(self, count: int) -> Array:
@@ -99,8 +120,8 @@ class DualRidge:
 
         By the leave-one-out formula of ridge regression. The intercept is that of all rows.
         """
-        dual = self._inverse[count:] @ (self._indicators - self._indicators.mean(axis=0))
-        scores: Array = self._indicators[count:] - dual / np.diag(self._inverse)[count:, None]
+        of_inverse = np.square(self._root[:, count:]).sum(axis=0)
+        scores: Array = self._indicators[count:] - self._dual[count:] / of_inverse[:, None]
         return scores
 
 

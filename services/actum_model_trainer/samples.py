@@ -89,7 +89,7 @@ class LabelledStream:
     agent: int
     depth_inferred: bool = False
 
-    @property
+    @cached_property
     def marked(self) -> Found:
         """What the person did, and when the person was seen."""
         return Found(

@@ -37,9 +37,15 @@ def side_by_side(
     The progress is that of the stage.
     """
     results = []
+
+    def alone(item: Item) -> Result:
+        """Work with nothing of its own side by side: all threads are in use already."""
+        with at_most(1):
+            return work(item)
+
     with ThreadPoolExecutor(_JOBS.get() or _processors()) as pool:
         progress(stage, 0, len(items))
-        for done, result in enumerate(pool.map(work, items), start=1):
+        for done, result in enumerate(pool.map(alone, items), start=1):
             results.append(result)
             progress(stage, done, len(items))
     return results

@@ -11,9 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Floats
+from actum.core import steps
 from actum.skeletons import INDEX, JOINTS
 from actum.som import Som, Together
 from som_classifier.handedness import ACROSS, OPPOSITE
+from som_classifier.pyramid import SCALE, Sums, running_sums
 
 VELOCITY_WEIGHT = 3.0
 """Weight of velocities against positions in the arm map's input: both then have about the same variance."""
@@ -127,6 +129,26 @@ class FirstMaps:
         sides = rows, mirrored_inputs(rows)
         blocks = [_excess2s(self.maps[name], MAP_INPUTS[name](sides[mirrored])) for name, mirrored in CHANNELS]
         return self._normalised(np.concatenate(blocks, axis=1))
+
+    def running_sums(self, postures: Floats, velocities: Floats) -> Sums:
+        """Return the sums of the quantised activities before each of many frames, and after the last, (n + 1, units).
+
+        Args:
+            postures: (n, 15, 3), as for `activities`.
+            velocities: (n, 15, 3).
+        """
+        rows = frame_inputs(postures, velocities)
+        if steps is None or self.postures.dtype != np.float32 or np.isnan(rows).any():
+            return running_sums(self.activities(postures, velocities))
+        sums, sides = np.zeros((len(rows) + 1, self.units), np.uint32), (rows, mirrored_inputs(rows))
+        for number, channel in enumerate(CHANNELS):
+            som, inputs = self.maps[channel.map], MAP_INPUTS[channel.map](sides[channel.mirrored])
+            units, factors = len(som.weights), (float(self._slopes[number, 0]), float(self.shares[number, 0]), SCALE)
+            for chunk, scores in som.lookup.scores(inputs):
+                steps.added_channel(
+                    scores, scores.shape[1], units, *factors, sums, self.units, chunk.start, number * units
+                )
+        return sums
 
     def winners(self, postures: Floats) -> NDArray[np.intp]:
         """Return the map of postures' winner for each of (n, 15, 3), shape (n,); 0 where all joints are missing."""

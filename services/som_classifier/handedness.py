@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.arrays import Mask
 from actum.core import steps
 from actum.messages import Hand
 from actum.skeletons import INDEX, JOINTS
@@ -120,6 +121,22 @@ def left_arm_acts(before: Integers, after: Integers, first: int) -> bool:
         return acts
     moments = (after - before)[first : first + LIMBS * MOMENTS]
     return LimbSpreads.of(moments.reshape(LIMBS, MOMENTS)).left_handed
+
+
+def left_handed(before: Integers, after: Integers) -> Mask:
+    """Return whether the left arm acts in each of n spans of frames, as `LimbSpreads.left_handed` says, (n,).
+
+    Args:
+        before: (n, 4, 8), the moments summed over all frames before each span.
+        after: the same with those of the span.
+    """
+    moments = (after - before).astype(np.float64)
+    counts = np.maximum(moments[..., 7], 1.0)
+    means2 = np.square(moments[..., :6]).sum(axis=-1) / counts**2
+    limbs = np.sqrt(np.maximum(moments[..., 6] / counts - means2, 0.0))
+    left = limbs[:, _LEFT_ARM]
+    acts: Mask = (left == limbs.max(axis=1)) & (left + _JITTER_MM > _FACTOR * (limbs[:, _RIGHT_ARM] + _JITTER_MM))
+    return acts
 
 
 def _spread(limb: Sequence[int]) -> float:

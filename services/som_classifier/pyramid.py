@@ -61,7 +61,7 @@ class PrefixSums:
         travelled_um: (n + 1,), of the displacements of all body parts, micrometres.
     """
 
-    sums: list[Sums]
+    sums: Sequence[Sums] | Sums
     travelled_um: NDArray[np.int64]
 
     def __len__(self) -> int:
@@ -134,11 +134,24 @@ class Pyramid:
         """
         if not len(segment):
             raise ValueError("the segment contains no frame")
-        if steps is None or len(segment) > MOST_FRAMES:
-            return self._vector(segment)
         vector = np.empty(self.cells * len(segment.sums[0]), np.float32)
-        steps.pooled(segment.sums, segment.travelled_um, *self.compiled, SCALE, vector)
+        self.pool(segment, np.array([[0, len(segment)]]), vector[None])
         return vector
+
+    def pool(self, run: PrefixSums, spans: NDArray[np.int64], out: NDArray[np.float32]) -> None:
+        """Write the vectors of spans of a run's frames.
+
+        Args:
+            run: of all frames.
+            spans: (n, 2), the first frame of each, and the one after its last; none is empty.
+            out: (n, cells * units), room for the vectors, which lie one after the other in memory.
+        """
+        if steps is None or np.diff(spans).max(initial=0) > MOST_FRAMES:
+            for vector, (first, after) in zip(out, spans.tolist(), strict=True):
+                vector[:] = self._vector(run.between(first, after))
+        else:
+            sums, whole = np.ascontiguousarray(run.sums), np.ascontiguousarray(spans)
+            steps.pooled(sums, run.travelled_um, whole, *self.compiled, SCALE, out)
 
     def _vector(self, segment: PrefixSums) -> NDArray[np.float32]:
         at = segment.instants_of(self._borders)

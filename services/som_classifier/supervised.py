@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.arrays import Array, Floats, Indices
+from actum.core import steps
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +79,12 @@ class SupervisedLayer:
         unit_inputs = inputs / np.linalg.norm(inputs, axis=1, keepdims=True)
         desired = np.eye(len(weights))[targets]
         for epoch in range(epochs):
-            for index in rng.permutation(len(inputs)):
-                adapt(weights, unit_inputs[index], desired[index], beta)
+            order = rng.permutation(len(inputs))
+            if steps is not None:
+                steps.adapted(weights, unit_inputs, targets.astype(np.int64), order, beta)
+            else:
+                for index in order:
+                    adapt(weights, unit_inputs[index], desired[index], beta)
             report(epoch + 1, epochs)
         return SupervisedLayer(weights)
 

@@ -50,15 +50,18 @@ static int are_long_enough(const Py_buffer *buffers, const size_t *bytes, int co
     return 1;
 }
 
-/* Prefix sums of a segment: rows of sums with the distances travelled, or the frames' activities. Of an activity the
-   first item is the prefix before the frame, the second that after it; of a prefix the first are the sums of both sides,
-   the second is the distance. */
+/* Prefix sums of a segment: rows of sums with the distances travelled, or a list of the frames' activities. Of an
+   activity the first item is the prefix before the frame, the second that after it; of a prefix the first are the sums of
+   both sides, the second is the distance. Nothing of Python is touched where there is no list. */
 typedef struct {
     PyObject *list;
-    const int64_t *travelled_um; /* NULL where the list holds activities */
+    const uint32_t *rows;
+    const int64_t *travelled_um;
     Py_ssize_t first, frames;
     int side;
 } Segment;
+
+static int failed(const Segment *segment) { return segment->list != NULL && PyErr_Occurred() != NULL; }
 
 static PyObject *prefix_of(const Segment *segment, Py_ssize_t k)
 {
@@ -68,7 +71,7 @@ static PyObject *prefix_of(const Segment *segment, Py_ssize_t k)
 
 static double travelled(const Segment *segment, Py_ssize_t k)
 {
-    if (segment->travelled_um != NULL)
+    if (segment->list == NULL)
         return (double)segment->travelled_um[k];
     PyObject *prefix = prefix_of(segment, k);
     return prefix == NULL ? NAN : (double)PyLong_AsLongLong(PyTuple_GetItem(prefix, 1));
@@ -78,9 +81,11 @@ static double travelled(const Segment *segment, Py_ssize_t k)
 static int take_row(const Segment *segment, Py_ssize_t k, Py_ssize_t units, Py_buffer *row)
 {
     PyObject *sums = NULL;
-    if (segment->travelled_um != NULL)
-        Py_XINCREF(sums = PyList_GetItem(segment->list, k));
-    else if ((sums = prefix_of(segment, k)) != NULL)
+    row->obj = NULL;
+    row->buf = (void *)(segment->rows + k * units);
+    if (segment->list == NULL)
+        return 0;
+    if ((sums = prefix_of(segment, k)) != NULL)
         sums = PySequence_GetItem(PyTuple_GetItem(sums, 0), segment->side);
     int failed = sums == NULL || PyObject_GetBuffer(sums, row, PyBUF_SIMPLE) < 0;
     Py_XDECREF(sums);
@@ -145,14 +150,14 @@ static void pool(const Segment *segment, const Cells *cells, Py_ssize_t units, d
 {
     double begin = travelled(segment, 0), moved = travelled(segment, segment->frames) - begin;
     Py_buffer start, below, above;
-    if (PyErr_Occurred() || take_row(segment, 0, units, &start) < 0)
+    if (failed(segment) || take_row(segment, 0, units, &start) < 0)
         return;
-    for (Py_ssize_t k = 0; k < cells->count && !PyErr_Occurred(); k++) {
+    for (Py_ssize_t k = 0; k < cells->count && !failed(segment); k++) {
         at[k] = instant_of(cells->borders[k], segment, begin, moved);
         Py_ssize_t row = (Py_ssize_t)at[k];
         if (row > segment->frames - 1)
             row = segment->frames - 1;
-        if (PyErr_Occurred() || take_row(segment, row, units, &below) < 0)
+        if (failed(segment) || take_row(segment, row, units, &below) < 0)
             break;
         if (take_row(segment, row + 1, units, &above) == 0) {
             sum_at_border(start.buf, below.buf, above.buf, (float)(at[k] - (double)row), at_border + k * units, units);
@@ -161,41 +166,55 @@ static void pool(const Segment *segment, const Cells *cells, Py_ssize_t units, d
         PyBuffer_Release(&below);
     }
     PyBuffer_Release(&start);
-    for (Py_ssize_t c = 0; c < cells->cells && !PyErr_Occurred(); c++) {
+    for (Py_ssize_t c = 0; c < cells->cells && !failed(segment); c++) {
         int32_t from = cells->begins[c], to = cells->ends[c];
         float length = (float)((at[to] - at[from]) * cells->scale);
         fourth_root_of_mean(at_border + from * units, at_border + to * units, length, out + c * units, units);
     }
 }
 
+/* Pool spans of a run of frames, from the first of each up to the one before `after`. */
+static void pool_spans(const Segment *run, const Cells *cells, const int64_t *spans, Py_ssize_t count, Py_ssize_t units,
+                       double *at, float *at_border, float *out)
+{
+    for (Py_ssize_t n = 0; n < count; n++) {
+        int64_t first = spans[2 * n], after = spans[2 * n + 1];
+        Segment segment = {NULL, run->rows + first * units, run->travelled_um + first, 0, after - first, 0};
+        pool(&segment, cells, units, at, at_border, out + n * cells->cells * units);
+    }
+}
+
 PyDoc_STRVAR(pooled_doc,
-    "pooled(sums, travelled_um, borders, begins, ends, scale, out)\n--\n\n"
-    "Write the fourth root of each cell's mean activity, (cells * units,), of a segment's prefix sums.");
+    "pooled(sums, travelled_um, spans, borders, begins, ends, scale, out)\n--\n\n"
+    "Write the fourth root of each cell's mean activity, (spans, cells * units), of spans of frames of a run, of which\n"
+    "there are the prefix sums: the first frame of each, and the one after its last.");
 static PyObject *pooled(PyObject *module, PyObject *args)
 {
-    PyObject *sums;
-    Py_buffer b[5];
+    Py_buffer b[7];
     double scale;
-    if (!PyArg_ParseTuple(args, "O!y*y*y*y*dw*", &PyList_Type, &sums, &b[0], &b[1], &b[2], &b[3], &scale, &b[4]))
+    if (!PyArg_ParseTuple(args, "y*y*y*y*y*y*dw*", &b[0], &b[1], &b[2], &b[3], &b[4], &b[5], &scale, &b[6]))
         return NULL;
-    Cells cells = {b[1].buf, b[2].buf, b[3].buf, b[1].len / 8, b[2].len / 4, scale};
-    Segment segment = {sums, b[0].buf, 0, b[0].len / 8 - 1, 0};
-    if (cells.cells < 1) {
-        PyErr_SetString(PyExc_ValueError, "the pyramid has no cell");
-        return released(b, 5);
-    }
-    Py_ssize_t units = b[4].len / 4 / cells.cells;
-    double *at = PyMem_Malloc(cells.count * sizeof(double));
-    float *at_border = PyMem_Malloc(cells.count * units * sizeof(float));
+    Cells cells = {b[3].buf, b[4].buf, b[5].buf, b[3].len / 8, b[4].len / 4, scale};
+    Segment run = {NULL, b[0].buf, b[1].buf, 0, b[1].len / 8 - 1, 0};
+    const int64_t *spans = b[2].buf;
+    Py_ssize_t count = b[2].len / 16, units = run.frames >= 0 ? b[0].len / 4 / (run.frames + 1) : 0;
+    int fits = cells.cells > 0 && units > 0 && b[6].len == count * cells.cells * units * (Py_ssize_t)sizeof(float);
+    for (Py_ssize_t n = 0; n < count && fits; n++)
+        fits = spans[2 * n] >= 0 && spans[2 * n] < spans[2 * n + 1] && spans[2 * n + 1] <= run.frames;
+    double *at = PyMem_Malloc(cells.count * sizeof(double) + 1);
+    float *at_border = PyMem_Malloc(cells.count * units * sizeof(float) + 1);
     if (at == NULL || at_border == NULL)
         PyErr_NoMemory();
-    else if (PyList_Size(sums) != segment.frames + 1 || segment.frames < 1)
-        PyErr_SetString(PyExc_ValueError, "the sums are not as many as the frames and one");
-    else
-        pool(&segment, &cells, units, at, at_border, b[4].buf);
+    else if (!fits)
+        PyErr_SetString(PyExc_ValueError, "a span holds no frame or reaches beyond the sums, or the result has another size");
+    else {
+        Py_BEGIN_ALLOW_THREADS
+        pool_spans(&run, &cells, spans, count, units, at, at_border, b[6].buf);
+        Py_END_ALLOW_THREADS
+    }
     PyMem_Free(at);
     PyMem_Free(at_border);
-    return released(b, 5);
+    return released(b, 7);
 }
 
 PyDoc_STRVAR(pooled_windows_doc,
@@ -222,7 +241,7 @@ static PyObject *pooled_windows(PyObject *module, PyObject *args)
     for (Py_ssize_t w = 0; w < windows && !PyErr_Occurred(); w++) {
         Py_ssize_t first = PyLong_AsSsize_t(PyList_GetItem(firsts, w));
         int side = PyLong_AsLong(PyList_GetItem(sides, w)) != 0;
-        Segment segment = {activities, NULL, first, PyList_Size(activities) - first, side};
+        Segment segment = {activities, NULL, NULL, first, PyList_Size(activities) - first, side};
         if (!PyErr_Occurred() && (first < 0 || segment.frames < 1))
             PyErr_SetString(PyExc_ValueError, "a window holds no frame");
         if (!PyErr_Occurred())
@@ -964,6 +983,118 @@ static PyObject *running_sums(PyObject *module, PyObject *args)
     return released(b, 2);
 }
 
+/* exp(x) of x from -87 to 0, to two units in the last place, as a polynomial about the nearest multiple of ln 2. */
+INLINE float exp_below(float x)
+{
+    const float round = 12582912.0f, whole = (x * 1.44269504f + round) - round;
+    float rest = (x - whole * 0.693359375f) + whole * 2.12194440e-4f, power;
+    float sum = ((((1.9875691500e-4f * rest + 1.3981999507e-3f) * rest + 8.3334519073e-3f) * rest + 4.1665795894e-2f) * rest
+                 + 1.6666665459e-1f) * rest + 5.0000001201e-1f;
+    int32_t bits = ((int32_t)whole + 127) << 23;
+    memcpy(&power, &bits, sizeof power);
+    return (sum * rest * rest + rest + 1.0f) * power;
+}
+
+/* The activities of a map for one input, before they are divided by their sum. */
+VECTORISED static void activities_of(const float *scores, float least, float slope, float *out, Py_ssize_t units)
+{
+    for (Py_ssize_t u = 0; u < units; u++) {
+        float exponent = (scores[u] - least) * 2 * slope;
+        out[u] = exp_below(exponent < -87.0f ? -87.0f : exponent);
+    }
+}
+
+static void add_channel(const float *scores, Py_ssize_t rows, Py_ssize_t stride, Py_ssize_t units, float slope, float share,
+                        float scale, uint32_t *sums, Py_ssize_t width, float *activity)
+{
+    for (Py_ssize_t row = 0; row < rows; row++, scores += stride, sums += width) {
+        activities_of(scores, least_of(scores, units), slope, activity, units);
+        add_quantised(activity, share / pairwise_sum(activity, units), scale, sums, sums + width, units);
+    }
+}
+
+PyDoc_STRVAR(added_channel_doc,
+    "added_channel(scores, stride, units, slope, share, scale, sums, width, row, column)\n--\n\n"
+    "Add up the quantised activities of one channel for several frames, whose scores (frames, stride) are given:\n"
+    "write the columns from `column` on of the rows after `row` of sums (…, width), of which that row is known.");
+static PyObject *added_channel(PyObject *module, PyObject *args)
+{
+    Py_buffer b[2];
+    Py_ssize_t stride, units, width, row, column;
+    float slope, share, scale;
+    if (!PyArg_ParseTuple(args, "y*nnfffw*nnn", &b[0], &stride, &units, &slope, &share, &scale, &b[1], &width, &row, &column))
+        return NULL;
+    Py_ssize_t rows = stride > 0 ? b[0].len / (Py_ssize_t)sizeof(float) / stride : 0;
+    float *activity = PyMem_Malloc((units > 0 ? units : 0) * sizeof(float) + 1);
+    int fits = units > 0 && units <= stride && row >= 0 && column >= 0 && column + units <= width
+               && (row + rows + 1) * width * (Py_ssize_t)sizeof(uint32_t) <= b[1].len;
+    if (activity == NULL)
+        PyErr_NoMemory();
+    else if (!fits)
+        PyErr_SetString(PyExc_ValueError, "there are fewer scores than units, or the sums have too few rows or columns");
+    else {
+        Py_BEGIN_ALLOW_THREADS
+        add_channel(b[0].buf, rows, stride, units, slope, share, scale, (uint32_t *)b[1].buf + row * width + column, width,
+                    activity);
+        Py_END_ALLOW_THREADS
+    }
+    PyMem_Free(activity);
+    return released(b, 2);
+}
+
+VECTORISED static double dot(const double *x, const double *y, Py_ssize_t n)
+{
+    double of_lane[LANES] = {0}, sum = 0;
+    Py_ssize_t i = 0;
+    for (; i + LANES <= n; i += LANES)
+        for (int lane = 0; lane < LANES; lane++)
+            of_lane[lane] += x[i + lane] * y[i + lane];
+    for (; i < n; i++)
+        sum += x[i] * y[i];
+    for (int lane = 0; lane < LANES; lane++)
+        sum += of_lane[lane];
+    return sum;
+}
+
+VECTORISED static void add_times(double *x, double factor, const double *y, Py_ssize_t n)
+{
+    for (Py_ssize_t i = 0; i < n; i++)
+        x[i] += factor * y[i];
+}
+
+VECTORISED static void divide(double *x, double by, Py_ssize_t n)
+{
+    for (Py_ssize_t i = 0; i < n; i++)
+        x[i] /= by;
+}
+
+PyDoc_STRVAR(adapted_doc,
+    "adapted(weights, inputs, targets, order, beta)\n--\n\n"
+    "Apply the delta rule to neurons' weights (actions, width), in place, for some of the inputs (n, width) in this order.");
+static PyObject *adapted(PyObject *module, PyObject *args)
+{
+    Py_buffer b[4];
+    double beta;
+    if (!PyArg_ParseTuple(args, "w*y*y*y*d", &b[0], &b[1], &b[2], &b[3], &beta))
+        return NULL;
+    const int64_t *targets = b[2].buf, *order = b[3].buf;
+    Py_ssize_t count = b[2].len / 8, shown = b[3].len / 8, width = count ? b[1].len / 8 / count : 0;
+    Py_ssize_t actions = width ? b[0].len / 8 / width : 0;
+    int fits = actions > 0 && b[0].len == actions * width * 8;
+    for (Py_ssize_t n = 0; n < shown && fits; n++)
+        fits = order[n] >= 0 && order[n] < count;
+    if (!fits)
+        PyErr_SetString(PyExc_ValueError, "the weights and the inputs have different widths, or an input is missing");
+    for (Py_ssize_t n = 0; n < shown && fits; n++)
+        for (Py_ssize_t action = 0; action < actions; action++) {
+            const double *x = (const double *)b[1].buf + order[n] * width;
+            double *weights = (double *)b[0].buf + action * width;
+            add_times(weights, beta * ((action == targets[order[n]]) - dot(weights, x, width)), x, width);
+            divide(weights, sqrt(dot(weights, weights, width)), width);
+        }
+    return released(b, 4);
+}
+
 typedef struct {
     int64_t lag_ns, memory_ns, decided_ns;
     double overlap;
@@ -1312,7 +1443,9 @@ static PyObject *comotion(PyObject *module, PyObject *args)
 }
 
 static PyMethodDef methods[] = {
+    {"adapted", adapted, METH_VARARGS, adapted_doc},
     {"added", added, METH_VARARGS, added_doc},
+    {"added_channel", added_channel, METH_VARARGS, added_channel_doc},
     {"body", body, METH_VARARGS, body_doc},
     {"bounds", bounds, METH_VARARGS, bounds_doc},
     {"centred", centred, METH_VARARGS, centred_doc},

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from actum_model_trainer.basis import Basis
+from actum_model_trainer.products import inner_products, inverse_root, solution
 from actum_model_trainer.ridge import DualRidge, PrimalRidge, Ridge, ridge
 
 SHRINKAGE = 0.2
@@ -21,7 +22,8 @@ def rows(inputs: int = 12) -> tuple[np.ndarray, np.ndarray]:
 
 def answers(fitted: Ridge) -> list[np.ndarray]:
     held_out = np.array([1, 4, 5])
-    return [fitted.axes, fitted.offsets, fitted.scores, fitted.held_out(held_out), fitted.each_left_out(COUNT)]
+    left_out = [fitted.held_out(held_out), fitted.each_left_out(COUNT)]
+    return [fitted.axes, fitted.offsets, fitted.scores, *left_out]
 
 
 @pytest.mark.parametrize("inputs", [5, 12, 40])
@@ -29,6 +31,32 @@ def test_the_dual_and_the_primal_form_give_the_same(inputs: int) -> None:
     dual, primal = (answers(form(*rows(inputs), SHRINKAGE)) for form in (DualRidge, PrimalRidge))
     for one, other in zip(dual, primal, strict=True):
         np.testing.assert_allclose(one, other, atol=2e-5)
+
+
+def ill_conditioned(count: int) -> np.ndarray:
+    """Inner products like those of pooled windows: what they have in common is longer than the penalty by far."""
+    rng = np.random.default_rng(count)
+    vectors = rng.random((count, 60)) + 20
+    return vectors @ vectors.T + np.eye(count)
+
+
+@pytest.mark.parametrize("count", [1, 5, 128, 129, 700])
+def test_a_system_of_equations_is_solved_however_much_vectors_have_in_common(count: int) -> None:
+    matrix, expected = ill_conditioned(count), np.random.default_rng(0).random((count, 3))
+    np.testing.assert_allclose(solution(matrix, matrix @ expected), expected, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("count", [1, 5, 128, 129, 700])
+def test_the_square_of_the_inverse_root_is_the_inverse(count: int) -> None:
+    matrix = ill_conditioned(count)
+    root = inverse_root(matrix)
+    np.testing.assert_allclose(root.T @ root @ matrix, np.eye(count), rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("count", [5, 999, 1001])
+def test_inner_products_of_halves_are_the_inner_products(count: int) -> None:
+    vectors = np.random.default_rng(count).normal(size=(count, 40)).astype(np.float32)
+    np.testing.assert_allclose(inner_products(vectors), vectors.astype(np.float64) @ vectors.T, atol=1e-4)
 
 
 def test_the_form_with_the_smaller_matrix_is_taken() -> None:

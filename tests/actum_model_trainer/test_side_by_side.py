@@ -38,6 +38,12 @@ def test_as_many_parts_run_at_the_same_time_as_are_allowed(jobs: int) -> None:
     assert counted.most == jobs
 
 
+def test_what_runs_within_a_part_adds_no_threads() -> None:
+    with at_most(2):
+        inner = side_by_side(lambda _: side_by_side(lambda _: threading.current_thread().name, range(3)), range(2))
+    assert [len(set(names)) for names in inner] == [1, 1]
+
+
 def test_the_limit_ends_with_its_block() -> None:
     with at_most(5):
         with at_most(1):

@@ -87,13 +87,13 @@ def test_the_vector_of_any_window_is_that_of_the_live_model(
     """But for single quantisation steps: activities of many frames at once round otherwise than those of one."""
     stream, frames = both
     model, rng = spotting_model(), np.random.default_rng(0)
-    encoded = EncodedStream(model, stream)
-    for first, length in zip(rng.integers(0, len(frames) - 5, 50), rng.integers(4, 60, 50), strict=True):
-        window = frames[first : first + length]
-        mean_activities = [
-            v.astype(np.float64) ** 4
-            for v in (encoded.vector(first, first + len(window) - 1), *model.pooled(window, [0]))
-        ]
+    firsts = rng.integers(0, len(frames) - 5, 50)
+    windows = np.stack([firsts, np.minimum(firsts + rng.integers(3, 59, 50), len(frames) - 1)], axis=1)
+    vectors = np.empty((50, model.stages.axes.shape[1]), np.float32)
+    EncodedStream(model, stream, windows).pool(0, 50, vectors)
+    for vector, (first, last) in zip(vectors, windows.tolist(), strict=True):
+        window = frames[first : last + 1]
+        mean_activities = [v.astype(np.float64) ** 4 for v in (vector, *model.pooled(window, [0]))]
         np.testing.assert_allclose(*mean_activities, rtol=3e-5, atol=2 / SCALE)
 
 
@@ -193,10 +193,9 @@ def ridge(vectors: np.ndarray, targets: np.ndarray, mean: np.ndarray, penalty: f
 @pytest.mark.parametrize("seed", range(3))
 def test_heads_without_a_fold_are_those_fitted_on_the_rest(seed: int) -> None:
     vectors, targets, folds = windows_of(seed)
-    heads, mean = fit_heads(vectors, targets, folds, 4, 0.4), vectors.mean(axis=0, dtype=np.float64)
+    mean, left_out = vectors.mean(axis=0, dtype=np.float64), [None, 0, 1, 2, 3]  # the last fold holds no window
     penalty = 0.4 * np.square(vectors - mean).sum(axis=1).mean()
-    assert len(heads.without) == 4, "the last fold holds no window"
-    for fold, of_rest in [(None, heads.all), *enumerate(heads.without)]:
+    for fold, of_rest in zip(left_out, fit_heads(vectors, targets, folds, left_out, 0.4), strict=True):
         kept = folds != fold if fold is not None else folds >= 0
         axes, offsets = ridge(vectors[kept], targets[kept], mean, penalty)
         np.testing.assert_allclose(of_rest.axes, axes, atol=1e-4)
@@ -205,10 +204,10 @@ def test_heads_without_a_fold_are_those_fitted_on_the_rest(seed: int) -> None:
 
 def test_heads_without_the_only_fold_answer_nothing_and_equal_windows_their_mean() -> None:
     vectors, targets, _ = windows_of(0)
-    one = fit_heads(vectors, targets, np.zeros(40, np.intp), 1, 0.4)
-    assert not one.without[0].axes.any() and not one.without[0].offsets.any()
-    same = fit_heads(np.ones((4, 6), np.float32), targets[:4], np.array([0, 1, 0, 1]), 2, 0.4)
-    np.testing.assert_allclose(same.all.completeness(np.ones(6, np.float32)), targets[:4].mean(axis=0), rtol=1e-5)
+    (without,) = fit_heads(vectors, targets, np.zeros(40, np.intp), [0], 0.4)
+    assert not without.axes.any() and not without.offsets.any()
+    (same,) = fit_heads(np.ones((4, 6), np.float32), targets[:4], np.array([0, 1, 0, 1]), [None], 0.4)
+    np.testing.assert_allclose(same.completeness(np.ones(6, np.float32)), targets[:4].mean(axis=0), rtol=1e-5)
 
 
 @given(seed=st.integers(0, 2**32 - 1), share=st.floats(0.0, 1.0))
@@ -218,9 +217,9 @@ def test_a_mixed_head_is_the_one_that_mixed_targets_give(seed: int, share: float
     rng = np.random.default_rng(seed)
     vectors, own = rng.normal(size=(30, 6)).astype(np.float32), rng.random((30, 3))
     folds = rng.integers(2, size=30)
-    heads = mixed_heads(fit_heads(vectors, with_common(own), folds, 2, 0.1).all, share)
+    heads = mixed_heads(fit_heads(vectors, with_common(own), folds, [None], 0.1)[0], share)
     any_action = own.max(axis=1, keepdims=True)
-    expected = fit_heads(vectors, (1 - share) * own + share * any_action, folds, 2, 0.1).all
+    (expected,) = fit_heads(vectors, (1 - share) * own + share * any_action, folds, [None], 0.1)
     np.testing.assert_allclose(heads.axes, expected.axes, atol=1e-4)
     np.testing.assert_allclose(heads.offsets, expected.offsets, atol=1e-4)
 

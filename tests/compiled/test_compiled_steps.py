@@ -34,6 +34,7 @@ from som_classifier.handedness import left_arm_acts, limb_moments
 from som_classifier.kinematics import KinematicsFilter
 from som_classifier.pyramid import PrefixSums, Pyramid, running_sums
 from som_classifier.spotting.decoding import Decoder, Spans, decoded
+from som_classifier.supervised import SupervisedLayer
 from unmarked import spotting_model
 
 pytestmark = pytest.mark.skipif(steps is None, reason="this installation found no C compiler")
@@ -144,6 +145,32 @@ def test_a_frame_adds_the_same_to_all_sums(seed: int) -> None:
         totals = [frame.activity.totals_after - frame.activity.totals_before for frame in (compiled, plain)]
         assert np.abs(totals[0] - totals[1]).max() <= 1
         assert compiled.activity.winners == plain.activity.winners
+
+
+@settings(deadline=None, max_examples=10)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1, 127, 300]), st.floats(0.01, 30.0))
+def test_many_frames_add_the_same_to_all_sums(seed: int, frames: int, far_m: float) -> None:
+    """But for steps of the quantisation where an activity lies between two; also far from all units."""
+    postures, velocities = np.random.default_rng(seed).normal(0, far_m, (2, frames, 15, 3))
+    sums = both(lambda: spotting_model().first.running_sums(postures, velocities))
+    steps_of_each = [np.diff(each.astype(np.int64), axis=0) for each in sums]
+    assert np.abs(steps_of_each[0] - steps_of_each[1]).max(initial=0) <= 1
+    assert not sums[0][0].any()
+
+
+def test_sums_of_frames_that_lack_a_joint_are_those_of_numpy() -> None:
+    postures, velocities = np.random.default_rng(0).normal(0, 0.3, (2, 20, 15, 3))
+    postures[3, 4] = velocities[3, 4] = np.nan
+    np.testing.assert_array_equal(*both(lambda: spotting_model().first.running_sums(postures, velocities)))
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(1, 30))
+def test_neurons_learn_the_same(seed: int, actions: int) -> None:
+    rng = np.random.default_rng(seed)
+    inputs, targets = rng.normal(size=(40, 21)), rng.integers(actions, size=40)
+    untrained = SupervisedLayer.random(actions, 21, rng)
+    trained = both(lambda: untrained.train(inputs, targets, 0.3, 3, np.random.default_rng(seed)).weights)
+    np.testing.assert_allclose(*trained, rtol=0, atol=1e-12)
 
 
 @given(st.integers(1, 80), st.booleans(), st.integers(0, 2**32 - 1), st.sampled_from([(1, 2, 4), (1,), (1, 2, 3, 5)]))
@@ -269,6 +296,13 @@ ZEROS = np.zeros(400)
 POSE = [[float(n), 0.0, 2.0] for n in range(15)]
 
 
+def pooled_by(spans: list[list[int]], frames: int = 2) -> None:
+    """Pool spans of a run of frames as one cell of three units, into room for one vector."""
+    sums, travelled_um = np.zeros((frames + 1, 3), np.uint32), np.zeros(frames + 1, np.int64)
+    cells = np.array([0.0, 1.0]), np.array([0], np.int32), np.array([1], np.int32)
+    steps.pooled(sums, travelled_um, np.array(spans), *cells, 1.0, np.empty(3, np.float32))
+
+
 @pytest.mark.parametrize(
     "call",
     [
@@ -278,7 +312,17 @@ POSE = [[float(n), 0.0, 2.0] for n in range(15)]
         lambda: steps.spreads(np.zeros(3, np.int64), np.zeros(3, np.int64)),
         lambda: steps.left_arm_acts(np.zeros(40, np.int64), np.zeros(40, np.int64), 20, 1.0, 1.0),
         lambda: steps.running_sums(np.zeros((3, 0), np.float32), 1.0, 0, np.zeros((4, 0), np.uint32)),
-        lambda: steps.pooled([], ZEROS, ZEROS, b"", b"", 1.0, np.empty(3, np.float32)),
+        lambda: steps.pooled(ZEROS, ZEROS, ZEROS, ZEROS, b"", b"", 1.0, np.empty(3, np.float32)),
+        lambda: pooled_by(spans=[[0, 3]]),
+        lambda: pooled_by(spans=[[-1, 1]]),
+        lambda: pooled_by(spans=[[1, 1]]),
+        lambda: pooled_by(spans=[[0, 2], [0, 1]]),
+        lambda: pooled_by(spans=[[0, 2]], frames=1),
+        lambda: steps.added_channel(np.zeros((2, 3), np.float32), 3, 4, 1, 1, 1, np.zeros((3, 8), np.uint32), 8, 0, 0),
+        lambda: steps.added_channel(np.zeros((2, 3), np.float32), 3, 3, 1, 1, 1, np.zeros((2, 8), np.uint32), 8, 0, 0),
+        lambda: steps.added_channel(np.zeros((2, 3), np.float32), 3, 3, 1, 1, 1, np.zeros((3, 8), np.uint32), 8, 0, 6),
+        lambda: steps.adapted(np.ones((2, 3)), np.ones((4, 3)), np.zeros(4, np.int64), np.array([4]), 0.1),
+        lambda: steps.adapted(np.ones((2, 3)), np.ones((4, 4)), np.zeros(4, np.int64), np.array([0]), 0.1),
         lambda: steps.bounds(np.empty((0, 3)), np.empty((2, 3))),
         lambda: steps.interpolated(np.zeros(9), np.zeros(2), np.zeros((2, 3)), np.empty((8, 3))),
         lambda: steps.interpolated(np.zeros(9), np.zeros(0), np.zeros((2, 3)), np.empty((9, 3))),

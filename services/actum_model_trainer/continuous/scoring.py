@@ -66,17 +66,32 @@ class ActionScore:
 
 
 @dataclass(frozen=True)
-class ContinuousScores:
-    """The scores of all recordings together.
+class EventScores:
+    """Which events are found in all recordings together, and how many false ones: all that a threshold is chosen by.
 
     Attributes:
         event: of events: the right label, and some time in common with the truth it answers.
         f1_at_iou: F1 where the overlap (IoU) with that truth counts only from this on.
-        point_f1: F1 of action points within `POINT_TOLERANCE_NS`; None where no truth has one.
         false_detections: detections that answer no truth.
         background_min: the minutes in which somebody was seen and did none of the actions.
         false_per_min: false detections in a minute of background, wherever they lie; None without background.
         alarms_per_min: the same of those alone that have no time in common with any truth: they lie in the background.
+    """
+
+    event: ActionScore
+    f1_at_iou: dict[float, float]
+    false_detections: int
+    background_min: float
+    false_per_min: float | None
+    alarms_per_min: float | None
+
+
+@dataclass(frozen=True)
+class ContinuousScores(EventScores):
+    """The scores of all recordings together.
+
+    Attributes:
+        point_f1: F1 of action points within `POINT_TOLERANCE_NS`; None where no truth has one.
         latency_s: from a truth's end to the answer to it, seconds: median and 90th percentile; None without an answer.
         fragmentations: truths to which more than one detection belongs, by more than half of its length, whatever its
             label.
@@ -86,13 +101,7 @@ class ContinuousScores:
         per_action: the scores of each action, by label.
     """
 
-    event: ActionScore
-    f1_at_iou: dict[float, float]
     point_f1: float | None
-    false_detections: int
-    background_min: float
-    false_per_min: float | None
-    alarms_per_min: float | None
     latency_s: tuple[float, float] | None
     fragmentations: int
     merges: int
@@ -124,24 +133,36 @@ class ContinuousScores:
         }
 
 
-def scores_of(found: Found) -> ContinuousScores:
-    """Score what was found."""
-    matches = matched(found.detections, found.truths, intersection_over_union)
+def event_scores(found: Found) -> EventScores:
+    """Score which events were found."""
+    return _event_scores(found, matched(found.detections, found.truths, intersection_over_union))
+
+
+def _event_scores(found: Found, matches: Sequence[Match]) -> EventScores:
     detections, truths = len(found.detections), len(found.truths)
-    minutes = background_min(found.seen, found.truths)
+    minutes, done = background_min(found.seen, found.truths), _of_one_person(found.truths)
     false = detections - len(matches)
-    done, answered = _of_one_person(found.truths), _of_one_person(found.detections)
     in_background = sum(
         all(overlap_ns(own, truth) <= 0 for truth in done[own.file, own.agent]) for own in found.detections
     )
-    return ContinuousScores(
+    return EventScores(
         event=ActionScore(truths, detections, len(matches)),
         f1_at_iou={iou: f1(sum(match.fit >= iou for match in matches), detections, truths) for iou in IOUS},
-        point_f1=point_f1(found.detections, found.truths),
         false_detections=false,
         background_min=minutes,
         false_per_min=false / minutes if minutes else None,
         alarms_per_min=in_background / minutes if minutes else None,
+    )
+
+
+def scores_of(found: Found) -> ContinuousScores:
+    """Score what was found."""
+    matches = matched(found.detections, found.truths, intersection_over_union)
+    of_events = _event_scores(found, matches)
+    minutes, done, answered = of_events.background_min, _of_one_person(found.truths), _of_one_person(found.detections)
+    return ContinuousScores(
+        **vars(of_events),
+        point_f1=point_f1(found.detections, found.truths),
         latency_s=latency_s(matches),
         fragmentations=_holding_several(found.truths, answered),
         merges=_holding_several(found.detections, done),

@@ -1,7 +1,7 @@
 """Training of the completeness heads on windows: ridge regression, once on all windows and once without each fold."""
 
-from collections.abc import Callable, Sequence
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
 from actum_model_trainer.augmentation import Variant, augmentation_for, varied
+from actum_model_trainer.products import solution
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.ridge import dual_form
+from actum_model_trainer.ridge import DualForm
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.spotting.common_head import with_common
@@ -19,23 +20,6 @@ from actum_model_trainer.spotting.training_windows import TrainingWindows
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.spotting_model import CompletenessHeads
-
-
-class FoldedHeads:
-    """Heads trained on the windows of all folds but one, and on all windows once these are asked for.
-
-    Attributes:
-        without: by the fold that was left out.
-    """
-
-    def __init__(self, fit: Callable[[int | None], CompletenessHeads], fold_count: int) -> None:
-        self._fit = fit
-        self.without = side_by_side(fit, range(fold_count))
-
-    @cached_property
-    def all(self) -> CompletenessHeads:
-        """Return the heads trained on all windows."""
-        return self._fit(None)
 
 
 class Folds:
@@ -71,9 +55,9 @@ class WindowRows(NamedTuple):
     completeness: Array
     folds: Indices
 
-    def heads(self, fold_count: int, shrinkage: float) -> FoldedHeads:
-        """Train the actions' heads and the common one."""
-        return fit_heads(self.vectors, with_common(self.completeness), self.folds, fold_count, shrinkage)
+    def heads(self, left_out: Sequence[int | None], shrinkage: float) -> list[CompletenessHeads]:
+        """Train the actions' heads and the common one without each of these folds; None leaves out none."""
+        return fit_heads(self.vectors, with_common(self.completeness), self.folds, left_out, shrinkage)
 
 
 def window_rows(
@@ -88,57 +72,87 @@ def window_rows(
     """Pool about `most_windows` of the streams' windows. Few windows are shown in several variants."""
     copies = preset.spotting.most_windows / max(sum(len(each.frames) for each in windows), 1)
     augmentation = augmentation_for([stream.person for stream in streams], preset)
-    vectors, completeness, of_fold = [], [], []
-    for done, (stream, each) in enumerate(zip(streams, windows, strict=True)):
-        progress("windows of streams", done, len(streams))
+    drawn = [_Drawn.of(*each, copies, augmentation, rng) for each in zip(streams, windows, strict=True)]
+    ends = np.cumsum([len(each.frames) for each in drawn])
+    vectors = np.empty((ends[-1], model.pyramid.cells * model.first.units), np.float32)
+
+    def pool(number: int) -> None:
+        drawn[number].pool(model, vectors[ends[number] - len(drawn[number].frames) : ends[number]])
+
+    side_by_side(pool, range(len(drawn)), "windows of streams", progress)
+    of_fold = [folds.of(each.stream, each.frames) for each in drawn]
+    return WindowRows(vectors, np.concatenate([each.completeness for each in drawn]), np.concatenate(of_fold))
+
+
+@dataclass(frozen=True, eq=False)
+class _Drawn:
+    """Windows of a stream, each in one of the stream's variants.
+
+    Attributes:
+        stream: in which they lie.
+        variants: of the stream.
+        variant_of: (n,), rising, the variant of each window.
+        frames: (n, 2), first and last frame of each.
+        completeness: (n, actions), what the heads are to answer.
+    """
+
+    stream: LabelledStream
+    variants: Sequence[Variant]
+    variant_of: Indices
+    frames: Indices
+    completeness: Array
+
+    @classmethod
+    def of(
+        cls,
+        stream: LabelledStream,
+        windows: TrainingWindows,
+        copies: float,
+        augmentation: PyramidPreset,
+        rng: np.random.Generator,
+    ) -> "_Drawn":
+        """Draw so many copies of each window, on average, at most one of each variant."""
         variants = list(varied(Variant((stream.postures, stream.velocities)), stream.depth_inferred, augmentation, rng))
-        often = int(copies) + (rng.random(len(each.frames)) < copies % 1)
-        kept = np.repeat(np.arange(len(each.frames)), np.minimum(often, len(variants)))
-        drawn = rng.integers(len(variants), size=len(kept))
-        vectors.append(_vectors(model, stream, variants, each.frames[kept], drawn))
-        completeness.append(each.completeness[kept])
-        of_fold.append(folds.of(stream, each.frames[kept]))
-    progress("windows of streams", len(streams), len(streams))
-    return WindowRows(np.concatenate(vectors), np.concatenate(completeness), np.concatenate(of_fold))
+        often = int(copies) + (rng.random(len(windows.frames)) < copies % 1)
+        kept = np.repeat(np.arange(len(windows.frames)), np.minimum(often, len(variants)))
+        variant_of = rng.integers(len(variants), size=len(kept))
+        kept = kept[np.argsort(variant_of, kind="stable")]
+        return cls(stream, variants, np.sort(variant_of), windows.frames[kept], windows.completeness[kept])
 
-
-def _vectors(
-    model: PyramidModel, stream: LabelledStream, variants: Sequence[Variant], frames: Indices, variant_of: Indices
-) -> NDArray[np.float32]:
-    """Return the pyramid vectors (n, inputs) of windows (n, 2) in variants (n,) of a stream."""
-    vectors = np.zeros((len(frames), model.pyramid.cells * model.first.units), np.float32)
-    for number in np.unique(variant_of):
-        encoded = EncodedStream(model, stream, variants[number])
-        for n in np.flatnonzero(variant_of == number):
-            vectors[n] = encoded.vector(*frames[n].tolist())
-    return vectors
+    def pool(self, model: PyramidModel, out: NDArray[np.float32]) -> None:
+        """Write the pyramid vectors (n, inputs) of the windows."""
+        for number in np.unique(self.variant_of).tolist():
+            own = slice(*np.searchsorted(self.variant_of, [number, number + 1]).tolist())
+            encoded = EncodedStream(model, self.stream, self.frames[own], self.variants[number])
+            encoded.pool(0, own.stop - own.start, out[own])
 
 
 def fit_heads(
-    vectors: NDArray[np.float32], completeness: Array, folds: Indices, fold_count: int, shrinkage: float
-) -> FoldedHeads:
-    """Fit completeness = vectors * axes + offsets by least squares + penalty * ‖axes‖².
+    vectors: NDArray[np.float32],
+    completeness: Array,
+    folds: Indices,
+    left_out: Sequence[int | None],
+    shrinkage: float,
+) -> list[CompletenessHeads]:
+    """Fit completeness = vectors * axes + offsets by least squares + penalty * ‖axes‖², without each of some folds.
 
-    The axes are sought in the span of the vectors (`dual_form`), so that one matrix of n × n inner products serves all
-    folds.
+    The axes are sought in the span of the vectors (`DualForm`), so that one matrix of n × n inner products serves all.
 
     Args:
         vectors: (n, inputs).
         completeness: (n, actions).
-        folds: (n,), 0 to fold_count - 1.
-        fold_count: how many there are; some may hold no window.
+        folds: (n,).
+        left_out: of the folds, which may hold no window or all of them; None leaves out none.
         shrinkage: relative penalty.
     """
-    mean, centred, products, penalty = dual_form(vectors, shrinkage)
-    products.ravel()[:: len(products) + 1] += penalty
+    form = DualForm.of(vectors, shrinkage)
 
     def without(fold: int | None) -> CompletenessHeads:
         kept = np.flatnonzero(folds != fold)
-        kept_mean = completeness[kept].mean(axis=0) if len(kept) else np.zeros(completeness.shape[1])
-        dual = np.zeros(completeness.shape, np.float32)
-        inner = products if fold is None else products[np.ix_(kept, kept)]
-        dual[kept] = np.linalg.solve(inner, completeness[kept] - kept_mean)
-        axes = centred.T @ dual
-        return CompletenessHeads(axes, (kept_mean - mean @ axes).astype(np.float32))
+        intercept = completeness[kept].mean(axis=0) if len(kept) else np.zeros(completeness.shape[1])
+        dual = np.zeros(completeness.shape)
+        inner = form.products if fold is None else form.products[np.ix_(kept, kept)]
+        dual[kept] = solution(inner, completeness[kept] - intercept)
+        return CompletenessHeads(*form.fitted(dual, intercept))
 
-    return FoldedHeads(without, fold_count)
+    return side_by_side(without, left_out)

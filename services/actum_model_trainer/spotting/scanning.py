@@ -12,13 +12,13 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
-from actum_model_trainer.spotting.heads_training import FoldedHeads, Folds
+from actum_model_trainer.spotting.heads_training import Folds
 from actum_model_trainer.spotting.training_windows import live_windows
 from som_classifier.pyramid_model import PyramidModel
-from som_classifier.spotting.spotting_model import PyramidSpottingMetadata
+from som_classifier.spotting.spotting_model import CompletenessHeads, PyramidSpottingMetadata
 
-CHUNK = 256
-"""Windows whose vectors are held at once."""
+CHUNK = 64
+"""Windows whose vectors are held at once: they stay in the processor's cache until they are multiplied."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +39,12 @@ class ScannedStream:
 def scanned(
     model: PyramidModel,
     streams: Sequence[LabelledStream],
-    heads: FoldedHeads,
+    heads: Sequence[CompletenessHeads],
     folds: Folds,
     metadata: PyramidSpottingMetadata,
     progress: Progress,
 ) -> list[ScannedStream]:
-    """Answer all live windows of the streams, each by heads that were trained without its fold."""
+    """Answer all live windows of the streams, each by the heads that were trained without its fold, of that number."""
     durations_ns = np.rint(np.array(metadata.window_durations_s) * SECOND_NS).astype(np.int64)
 
     def answered(stream: LabelledStream) -> ScannedStream:
@@ -55,14 +55,24 @@ def scanned(
 
 
 def _answers(
-    model: PyramidModel, stream: LabelledStream, windows: Indices, heads: FoldedHeads, folds: Folds
+    model: PyramidModel, stream: LabelledStream, windows: Indices, heads: Sequence[CompletenessHeads], folds: Folds
 ) -> NDArray[np.float32]:
     """Return the answers (n, actions) to windows (n, 2) of a stream."""
-    encoded, of_fold = EncodedStream(model, stream), folds.of(stream, windows)
-    answers = np.zeros((len(windows), len(heads.without[0].offsets)), np.float32)
-    for fold in np.unique(of_fold):
-        in_fold = np.flatnonzero(of_fold == fold)
-        for chunk in np.array_split(in_fold, -(-len(in_fold) // CHUNK)):
-            vectors = np.array([encoded.vector(first, last) for first, last in windows[chunk].tolist()])
-            answers[chunk] = vectors @ heads.without[fold].axes + heads.without[fold].offsets
+    encoded, of_fold = EncodedStream(model, stream, windows), folds.of(stream, windows)
+    answers = np.zeros((len(windows), len(heads[0].offsets)), np.float32)
+    room = np.empty((CHUNK, len(heads[0].axes)), np.float32)
+    for fold in np.unique(of_fold).tolist():
+        axes, offsets, in_fold = heads[fold].axes, heads[fold].offsets, np.flatnonzero(of_fold == fold)
+        for first, after in runs_of(in_fold):
+            for start in range(first, after, CHUNK):
+                chunk = slice(start, min(start + CHUNK, after))
+                vectors = room[: chunk.stop - start]
+                encoded.pool(chunk.start, chunk.stop, vectors)
+                answers[chunk] = vectors @ axes + offsets
     return answers
+
+
+def runs_of(numbers: Indices) -> list[tuple[int, int]]:
+    """Return the runs of rising numbers (n,) without a gap: the first of each, and the one after its last."""
+    runs = np.split(numbers, np.flatnonzero(np.diff(numbers) > 1) + 1)
+    return [(int(run[0]), int(run[-1]) + 1) for run in runs if len(run)]

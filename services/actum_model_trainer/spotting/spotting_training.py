@@ -23,7 +23,12 @@ from actum_model_trainer.spotting.heads_training import Folds, window_rows
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.spotting.scanning import ScannedStream, scanned
 from actum_model_trainer.spotting.threshold_choice import ThresholdChoice, chosen_threshold, false_alarms
-from actum_model_trainer.spotting.training_windows import training_windows, true_completeness, with_false_alarms
+from actum_model_trainer.spotting.training_windows import (
+    TrainingWindows,
+    training_windows,
+    true_completeness,
+    with_false_alarms,
+)
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.pyramid_spotter import FEWEST_FRAMES
@@ -55,29 +60,46 @@ def with_spotting(
     if not any(each.completeness.any() for each in windows):
         return model
     folds = Folds(usable, search.folds)
-    few = min(search.most_windows, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
-    less_varied = replace(preset, spotting=replace(search, most_windows=few))
-    first = window_rows(model, usable, windows, folds, less_varied, rng, progress).heads(folds.count, search.shrinkage)
-    coarse = before.model_copy(update={"interval_s": COARSE * search.interval_s})
-    answered = _mixed(scanned(model, usable, first, folds, coarse, progress), search.common_shares[0])
-    searching = SpottingModel(first.without[0], before)
-    alarms = false_alarms(answered, searching, model.labels, search.false_alarm_threshold)
-    windows = [with_false_alarms(*each, rng) for each in zip(usable, windows, alarms, strict=True)]
+    windows = _with_false_alarms(model, usable, windows, folds, before, preset, rng, progress)
     rows = window_rows(model, usable, windows, folds, preset, rng, progress)
     coordinates, completeness = pooled_basis(model.kept).coordinates(rows.vectors), rows.completeness
-    heads = rows.heads(folds.count, search.shrinkage)
+    heads, *of_others = rows.heads([None, *range(folds.count)], search.shrinkage)
     del rows
-    answered = scanned(model, usable, heads, folds, before, progress)
+    answered = scanned(model, usable, of_others, folds, before, progress)
     if not any(len(each.windows) for each in answered):
         return model
-    share, choice = _chosen(answered, SpottingModel(heads.all, before), model.labels, search)
+    share, choice = _chosen(answered, SpottingModel(heads, before), model.labels, search)
     probability = _probability(_mixed(answered, share), model.labels)
     people = len({stream.person for stream in usable if stream.segments})
     threshold = float(averaged_with_prior(choice.threshold, preset.prior.threshold, preset.prior, people))
     learned = before.model_copy(update=choice.stored | {"threshold": threshold, "probability": probability})
     metadata = model.metadata.model_copy(update={"spotting": learned})
     kept = {**model.kept, **KeptWindows(coordinates, completeness, share, digest_of_background(streams)).arrays}
-    return replace(model, heads=mixed_heads(heads.all, share), metadata=metadata, kept=kept)
+    return replace(model, heads=mixed_heads(heads, share), metadata=metadata, kept=kept)
+
+
+def _with_false_alarms(
+    model: PyramidModel,
+    streams: Sequence[LabelledStream],
+    windows: Sequence[TrainingWindows],
+    folds: Folds,
+    untuned: PyramidSpottingMetadata,
+    preset: PyramidPreset,
+    rng: np.random.Generator,
+    progress: Progress,
+) -> list[TrainingWindows]:
+    """Add windows about what heads that are trained on the others take for actions in background."""
+    search = preset.spotting
+    few = min(search.most_windows, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
+    less_varied = replace(preset, spotting=replace(search, most_windows=few))
+    of_others = window_rows(model, streams, windows, folds, less_varied, rng, progress).heads(
+        range(folds.count), search.shrinkage
+    )
+    coarse = untuned.model_copy(update={"interval_s": COARSE * search.interval_s})
+    answered = _mixed(scanned(model, streams, of_others, folds, coarse, progress), search.common_shares[0])
+    searching = SpottingModel(of_others[0], untuned)
+    alarms = false_alarms(answered, searching, model.labels, search.false_alarm_threshold)
+    return [with_false_alarms(*each, rng) for each in zip(streams, windows, alarms, strict=True)]
 
 
 def usable_streams(streams: Sequence[LabelledStream]) -> list[LabelledStream]:

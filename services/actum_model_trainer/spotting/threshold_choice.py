@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from actum.arrays import Mask
 from actum_model_trainer.continuous.detections import Detection, Found
-from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
+from actum_model_trainer.continuous.scoring import EventScores, event_scores
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.scanning import ScannedStream
 from som_classifier.kinematics import GAP_NS
@@ -53,7 +53,7 @@ def chosen_threshold(
 ) -> ThresholdChoice:
     """Search the streams with each threshold, and choose the best after smoothing over neighbouring ones."""
     judged = [Judged.of(each, learned) for each in scanned]
-    scores = [scores_of(found(judged, learned, labels, threshold)) for threshold in thresholds]
+    scores = [event_scores(found(judged, learned, labels, threshold)) for threshold in thresholds]
     worth = np.array([_worth(score) for score in scores])
     smoothed = np.convolve(np.pad(worth, 1, mode="edge"), np.full(3, 1 / 3), mode="valid")
     counted = scores[0].background_min >= SHORTEST_BACKGROUND_MIN
@@ -134,7 +134,7 @@ def false_alarms(
     return alarms
 
 
-def _worth(score: ContinuousScores) -> float:
+def _worth(score: EventScores) -> float:
     false = 0.0
     if score.background_min >= SHORTEST_BACKGROUND_MIN and score.alarms_per_min is not None:
         false = max(score.alarms_per_min - BEARABLE_PER_MIN, 0.0)
