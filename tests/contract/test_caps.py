@@ -109,7 +109,7 @@ def test_what_is_open_is_answered_as_if_there_were_no_flood() -> None:
 def test_frames_a_microsecond_apart_are_let_go_and_counted(
     case: Case, kind: type[Message], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for module in ("som_classifier.streams.MOST_FRAMES", "action_fusion.node.MOST_FRAMES"):
+    for module in ("som_classifier.streams.MOST_FRAMES", "action_fusion.intake.buffers.MOST_FRAMES"):
         monkeypatch.setattr(module, MOST_FRAMES // 60)
     monkeypatch.setattr("action_fusion.node.MOST_SIGHTINGS", MOST_FRAMES // 60)
     node, sample = case.build(), first(case, kind)
