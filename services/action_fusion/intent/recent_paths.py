@@ -18,7 +18,7 @@ SIDES: tuple[Hand, Hand] = ("right", "left")
 ARMS = [*HANDS, *(INDEX[f"{side}_{joint}"] for joint in ("elbow", "shoulder") for side in SIDES)]
 """The joints that are looked at: hands, elbows and shoulders."""
 LATEST_ROWS = 256
-"""Postures kept: two seconds at 120 a second."""
+"""Postures, and places of an object, that are kept at the most: two seconds at 120 a second."""
 LONGEST_GAP_NS = SECOND_NS // 2
 """After a longer gap in the postures a path begins anew (ns)."""
 KNOWN_NS = 10 * SECOND_NS
@@ -76,7 +76,9 @@ class RecentObjects:
             self.clear()
             self._session_id = sample.session_id
         for number, position_m in sample.positions_m.items():
-            stamps_ns, places_m = self._tracks.setdefault(number, (deque(), deque()))
+            stamps_ns, places_m = self._tracks.setdefault(
+                number, (deque(maxlen=LATEST_ROWS), deque(maxlen=LATEST_ROWS))
+            )
             while len(stamps_ns) > 1 and stamps_ns[1] < sample.stamp_ns - TRACK_NS:
                 stamps_ns.popleft()
                 places_m.popleft()
