@@ -24,13 +24,11 @@ NEAR_M = 0.03
 """Added to a distance before its logarithm is taken (m)."""
 SMALLEST_M = 1e-9
 """A hand nearer to an object's middle (m) is in no direction from it."""
-CARRIED_M = 0.25
-"""What moves so near to a hand (m) is probably in it: the fastest such object's speed tells that the hand is full."""
 FASTEST_MPS = 1.0
 """Speed (m/s) above which an object simply is fast."""
 HIDDEN = 4
 """Features of elbow and shoulders, which are 0 where these are not known."""
-FEATURES = 2 + 2 * len(HAND_S) + 2 + 2 + 3 + HIDDEN
+FEATURES = 2 + 2 * len(HAND_S) + 2 + 2 + 2 + HIDDEN
 """Numbers of a hand and an object."""
 DELAYS_NS = (np.array([0.0, *HAND_S, *ELBOW_S, TURN_S]) * SECOND_NS).astype(np.int64)
 
@@ -62,14 +60,12 @@ def approach(arms: RecentArms, objects: RecentObjects, stamp_ns: int) -> Approac
     ways = _ways(hands_m[0], hands_m[1 : 1 + len(HAND_S)], now_m)
     ahead_m = hands_m[0] + (hands_m[0] - hands_m[2]) * (AHEAD_S / HAND_S[1])
     speeds_mps = np.minimum(np.linalg.norm(now_m - before_m, axis=1) / OBJECT_S, FASTEST_MPS)
-    carried_mps = np.where(distances_m < CARRIED_M, speeds_mps, 0.0).max(axis=1, initial=0.0)
     features = [
         distances_m,
         np.log(distances_m + NEAR_M),
         *ways,
         np.linalg.norm(now_m - ahead_m[:, None], axis=2),
         np.broadcast_to(speeds_mps, distances_m.shape),
-        np.broadcast_to(carried_mps[:, None], distances_m.shape),
         *_of_body(joints_m, apart_m / np.maximum(distances_m, SMALLEST_M)[..., None], now_m),
     ]
     return Approach(names, np.stack(features, axis=2), hands_m[0], now_m)
