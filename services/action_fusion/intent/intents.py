@@ -3,6 +3,7 @@
 from collections import OrderedDict, deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -20,8 +21,8 @@ LEAST = 0.05
 ACTIONS_LATE_NS = SECOND_NS // 10
 """How much older (ns) a partial action is than the posture that it is used with: so what is said does not depend on
 which message came first."""
-MOST_ACTIONS = 128
-"""Actions kept of a person: two seconds of two segments at 30 a second."""
+MOST_ESTIMATES = 128
+"""Estimates kept of a person: two seconds of two segments at 30 a second."""
 ACTION_LASTS_NS = SECOND_NS // 2
 """How long (ns) a partial action counts: the next comes with the next frame."""
 TOUCH_M = 0.12
@@ -30,18 +31,38 @@ SOONEST_S, LATEST_S = 0.02, 1.5
 """Range of the times to contact (s): a frame, and the horizon."""
 
 
+class Estimate(NamedTuple):
+    """What an intent needs of a partial action, or of the final one; that is little, however large the message is."""
+
+    stamp_ns: int
+    segment_id: str
+    final: bool
+    action: str | None
+    confidence: float
+    hand: Hand | None
+    completeness: float | None
+
+    @classmethod
+    def of(cls, action: Action) -> Self:
+        """Take it from an action; one that may be unknown counts as none."""
+        label = None if action.unknown else action.action
+        confidence = min(max(action.confidence, 0.0), 1.0)
+        of_segment = action.stamp_ns, action.segment_id, action.final
+        return cls(*of_segment, label, confidence, action.hand, action.completeness)
+
+
 @dataclass
 class Person:
-    """What is known of a person in one session: the arms, the newest actions, and the latest reach."""
+    """What is known of a person in one session: the arms, the newest estimates, and the latest reach."""
 
     session_id: str = ""
     arms: RecentArms = field(default_factory=RecentArms)
-    actions: deque[Action] = field(default_factory=lambda: deque(maxlen=MOST_ACTIONS))
+    estimates: deque[Estimate] = field(default_factory=lambda: deque(maxlen=MOST_ESTIMATES))
     reached_ns: int | None = None
 
-    def ongoing(self, stamp_ns: int) -> Action | None:
-        """Return the partial action that goes on at a stamp, as far as it is known everywhere by then."""
-        known = [each for each in self.actions if each.stamp_ns <= stamp_ns - ACTIONS_LATE_NS]
+    def ongoing(self, stamp_ns: int) -> Estimate | None:
+        """Return the estimate of the action that goes on at a stamp, as far as it is known everywhere by then."""
+        known = [each for each in self.estimates if each.stamp_ns <= stamp_ns - ACTIONS_LATE_NS]
         ended = {each.segment_id for each in known if each.final}
         going = [
             each
@@ -93,7 +114,7 @@ class Intents:
     def action(self, action: Action) -> None:
         """Take a partial action, or the final one that ends it."""
         if action.agent and (action.valid or action.final):
-            self._person(action.agent).actions.append(action)
+            self._person(action.agent).estimates.append(Estimate.of(action))
 
     def clear(self) -> None:
         """Forget everything, after a restart of a stream."""
@@ -108,7 +129,7 @@ class Intents:
             self._people.popitem(last=False)
         return person
 
-    def _intended(self, arms: RecentArms, stamp_ns: int, ongoing: Action | None) -> Iterator[Intended]:
+    def _intended(self, arms: RecentArms, stamp_ns: int, ongoing: Estimate | None) -> Iterator[Intended]:
         """Yield the contacts that are probable, each by the likelier hand."""
         seen = approach(arms, self._objects, stamp_ns) if self._objects else None
         if seen is None:
@@ -145,11 +166,11 @@ def touched_next(probability: Array) -> Array:
     return touched
 
 
-def _done(ongoing: Action | None, hand: Hand) -> tuple[str | None, float]:
+def _done(ongoing: Estimate | None, hand: Hand) -> tuple[str | None, float]:
     """Return the action that a hand may do, and its confidence; None for none, and for one of the other hand."""
-    if ongoing is None or ongoing.action is None or ongoing.unknown or ongoing.hand not in (None, hand):
+    if ongoing is None or ongoing.hand not in (None, hand):
         return None, 0.0
-    return ongoing.action, min(max(ongoing.confidence, 0.0), 1.0)
+    return ongoing.action, ongoing.confidence
 
 
 def touched_place(hand_m: Array, object_m: Array) -> Array:
