@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, ValidationError
+from pydantic_core import ErrorDetails
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
 
 from actum.keys import CHUNK
@@ -28,6 +29,10 @@ HIGHEST_PORT = 65535
 """Ports have 16 bits."""
 LONGEST_HOST = 48
 """Characters of the host's name in an instance's, so that the rest fits behind it."""
+NAME = f"^{CHUNK.pattern}$"
+"""A sensor's or a process's name, which is one chunk of its keys."""
+NAMES = f"^{CHUNK.pattern}(,{CHUNK.pattern})*$"
+"""One such name, or several with commas between them."""
 START = secrets.token_hex(2)
 """Tells this process from others of one host name and process id: hosts are copied, and a container's process is 1."""
 
@@ -57,10 +62,19 @@ def complaint(error: ValueError) -> str:
         return str(error)
     problems = [
         # no setting is named where several do not go together
-        ": ".join(filter(None, [".".join(map(str, e["loc"])), e["msg"].removeprefix("Value error, ")]))
+        ": ".join(filter(None, [".".join(map(str, e["loc"])), _in_words(e)]))
         for e in error.errors(include_url=False)
     ]
     return f"settings: {'; '.join(problems)}"
+
+
+def _in_words(error: ErrorDetails) -> str:
+    pattern = error.get("ctx", {}).get("pattern")
+    if pattern not in (NAME, NAMES):
+        return error["msg"].removeprefix("Value error, ")
+    if pattern == NAME and "," in error["input"]:
+        return f"{error['input']!r} is more than one name: name one"
+    return f"{error['input']!r} is not a name: use 1 to 64 of the characters a-z, 0-9, - and _"
 
 
 def _endpoint(text: str) -> str:
@@ -105,7 +119,7 @@ class ServiceSettings(BaseSettings):
     )
     sensor: str = Field(
         "kinect0",
-        pattern=f"^{CHUNK.pattern}$",
+        pattern=NAME,
         description=(
             "name of the sensor, such as kinect0; programs receive each other's messages only if they were started "
             "with the same name"
@@ -113,7 +127,7 @@ class ServiceSettings(BaseSettings):
     )
     instance: str = Field(
         default_factory=default_instance,
-        pattern=f"^{CHUNK.pattern}$",
+        pattern=NAME,
         description=(
             "name of this process, different from that of every other process of the same service; if not set, it is "
             "made from the host name and the process id"
@@ -192,7 +206,7 @@ class NodeSettings(ServiceSettings):
 
     sensor: str = Field(
         "kinect0",
-        pattern=f"^{CHUNK.pattern}(,{CHUNK.pattern})*$",
+        pattern=NAMES,
         description=(
             "name of the sensor, such as kinect0; programs receive each other's messages only if they were started "
             "with the same name. Several names, such as left,right, mean several sensors at once"

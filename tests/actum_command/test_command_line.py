@@ -324,7 +324,7 @@ def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
 @pytest.mark.parametrize(
     ("name", "value", "complaint"),
     [
-        ("ACTUM_SENSOR", "Kinect0", "settings: sensor: "),
+        ("ACTUM_SENSOR", "Kinect 0", "settings: sensor: 'Kinect 0' is not a name: use 1 to 64 of the characters a-z"),
         ("ACTUM_CONNECT", "127.0.0.1:7551", "'127.0.0.1:7551' is not an endpoint: use tcp/host:port"),
         ("ACTUM_CONNECT", "foo", "'foo' is not an endpoint: use tcp/host:port"),
         ("ACTUM_ZENOH_CONFIG", "/nowhere.json5", "/nowhere.json5 is not a Zenoh configuration"),
@@ -340,6 +340,11 @@ def test_settings_that_cannot_be_used_end_a_command_with_one_line(
     assert isinstance(refused.exception, SystemExit), refused.exception
     assert (refused.exit_code, refused.stderr.count("\n")) == (1, 1)
     assert complaint in refused.stderr
+
+
+def test_a_command_for_one_sensor_refuses_several(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ACTUM_SENSOR", "left,right")
+    assert "sensor: 'left,right' is more than one name: name one" in invoke("watch").stderr
 
 
 @pytest.fixture

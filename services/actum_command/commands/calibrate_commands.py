@@ -22,6 +22,7 @@ from actum_calibrator.pairs import Pair, PairingError, pair_files, pictures_in
 from actum_calibrator.view_set import GOOD_COVERAGE, PoorSetError
 from actum_command.commands.calibrate_up_command import up
 from actum_command.commands.plain_help import PlainTyper
+from actum_command.commands.service_flags import with_router_flags
 from actum_command.commands.terminal import connect, console, fail, failing_on, refuse_ending, say
 from actum_command.live_calibration import SilentStreamError, collect_pairs, collect_views
 
@@ -32,7 +33,7 @@ app = PlainTyper(
         "--board' prints, the tilt with a person who stands in front of the camera."
     ),
 )
-app.command("up")(up)
+app.command("up")(with_router_flags(up))
 
 Output = Annotated[Path, typer.Option("-o", "--output", help="the calibration file to write (.yaml)")]
 Squares = Annotated[
@@ -58,6 +59,7 @@ def _intrinsics_of(seen: str) -> Any:
 
 
 @app.command("intrinsics")
+@with_router_flags
 def intrinsics(
     output: Output,
     images: Annotated[
@@ -97,6 +99,7 @@ def intrinsics(
 
 
 @app.command("extrinsics")
+@with_router_flags
 def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     markers_camera: Annotated[Path, _intrinsics_of("markers")],
     people_camera: Annotated[Path, _intrinsics_of("people")],
