@@ -21,7 +21,8 @@ from benchmarks.originals import original
 from actum_command.scene_marks import write_examples
 from actum_dataset_importer.importing import import_msr_action3d, import_utkinect
 from actum_model_trainer.answering import answer, encoded
-from actum_model_trainer.samples import SegmentSample, samples_from, select
+from actum_model_trainer.sample_reading import samples_from, select
+from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.side_by_side import at_most
 from actum_model_trainer.training import add_to, train
 from som_classifier.model import Model

@@ -28,7 +28,8 @@ from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
 from actum_model_trainer.augmentation import Variant, varied
-from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample
 from actum_model_trainer.sampling import Sampling
 from actum_model_trainer.side_by_side import at_most
 from actum_model_trainer.training import train_to_spot

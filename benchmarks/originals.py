@@ -6,7 +6,7 @@ from pathlib import Path
 
 from actum.recording import Recording
 from actum_dataset_importer.importing import ImportReport, Progress
-from actum_model_trainer.samples import select
+from actum_model_trainer.sample_reading import select
 
 Import = Callable[[Path, Path, Progress], ImportReport]
 

@@ -17,7 +17,7 @@ from actum.messages import Event, Image, Message, Objects, Skeleton, Truth
 from actum.recording import Recording
 from actum.standard_body import BONES
 from actum_command.scene_marks import mark_of, write_examples
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator

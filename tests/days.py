@@ -9,7 +9,7 @@ import numpy as np
 from actum.messages import Segment, Skeleton
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train_to_spot
 from people import FRAME_NS, STANDING, skeleton
 from performers import HAND_PATHS, TINY, performance

@@ -10,7 +10,8 @@ from typing import Any
 from actum.runtime import Client
 from actum.settings import ServiceSettings, host_and_port
 from actum_command.processes import simulated_objects
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 from actum_deployer.roles import PEOPLES, ROLES, Role, identity
 from actum_deployer.writing import write_deployment
 from live import PATIENCE_S, Running, free_endpoint, started, wait_until

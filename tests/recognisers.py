@@ -8,7 +8,8 @@ from pathlib import Path
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum.skeletons import PARTS
-from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
 from performers import HAND_PATHS, TINY, performance
 from som_classifier.handedness import mirrored

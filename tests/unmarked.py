@@ -14,7 +14,8 @@ from actum.node import Counters
 from actum.recorder import Recorder
 from actum.recording import Recording
 from actum_model_trainer.background import counterexamples
-from actum_model_trainer.samples import LabelledStream, Samples, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import LabelledStream, Samples
 from actum_model_trainer.training import train_to_spot
 from people import FRAME_NS, STANDING, skeleton
 from performers import HAND_PATHS, TINY, mark, posed

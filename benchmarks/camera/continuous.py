@@ -31,7 +31,7 @@ from actum_command.supervising import Supervisor
 from actum_dataset_importer.clips import Naming, read_clip
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from actum_model_trainer.continuous.scoring import scores_of
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train_to_spot
 from sensor_gateway.cameras import estimator_of, optics_of
 from sensor_gateway.settings import Settings

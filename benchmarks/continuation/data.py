@@ -13,7 +13,8 @@ from actum.node import replay
 from actum.recording import Recording
 from actum_dataset_importer.importing import import_msr_action3d, import_msrc12_composed, import_utkinect
 from actum_model_trainer.recorded_segments import FrameCollector, classifier_input
-from actum_model_trainer.samples import Samples, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import Samples
 from scene_simulator.everyday import ALL, FAMILIAR, Everyday
 from som_classifier.frames import Frame
 

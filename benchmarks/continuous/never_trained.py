@@ -22,7 +22,7 @@ from actum_dataset_importer.msrc12_composed import composed
 from actum_model_trainer.continuous.detections import Detection, Found, Truth
 from actum_model_trainer.continuous.matching import intersection_over_union, matched, overlap_ns
 from actum_model_trainer.continuous.scoring import scores_of
-from actum_model_trainer.samples import select
+from actum_model_trainer.sample_reading import select
 
 from .bench import Bench, share
 from .methods import SEED, Method, found

@@ -16,7 +16,8 @@ from actum_dataset_importer.importing import import_msrc12_composed, import_msrc
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
 from actum_model_trainer.continuous.watching import views_of, watched
 from actum_model_trainer.recorded_segments import FrameCollector
-from actum_model_trainer.samples import Samples, SegmentSample, sample_of, samples_from
+from actum_model_trainer.sample_reading import sample_of, samples_from
+from actum_model_trainer.samples import Samples, SegmentSample
 from scene_simulator.everyday import ALL, FAMILIAR, Everyday
 
 from .simulated import TAUGHT, TAUGHT_REPETITIONS, TESTED, TESTED_REPETITIONS, recording_of

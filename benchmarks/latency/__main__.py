@@ -26,7 +26,7 @@ from actum.recording import Recording
 from actum_command import processes
 from actum_command.scene_marks import write_examples
 from actum_command.simulated_model import SIMULATED_MODEL
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings

@@ -18,7 +18,8 @@ from actum.runtime import Client
 from actum.settings import ServiceSettings
 from actum_command import processes
 from actum_command.supervising import Program, Supervisor
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 from actum_deployer.roles import ROLES
 from actum_deployer.writing import write_deployment
 

@@ -16,7 +16,7 @@ from actum.messages import Action, Event, Message, Posture
 from actum.node import replay
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train_to_spot
 from scene_simulator.everyday import FAMILIAR, Everyday
 from scene_simulator.programme import Task, balanced_programme, object_ids

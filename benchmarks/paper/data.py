@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
-from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import SegmentSample
 
 from .set1 import import_set1
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.recording import Recording
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 
 from .bench import Bench
 from .changes import Change, Changed, childlike, dropped, mirrored, pitched, seated, turned

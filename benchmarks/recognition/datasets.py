@@ -20,7 +20,8 @@ from actum_dataset_importer.importing import (
     import_msrc12_trimmed,
     import_utkinect,
 )
-from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import SegmentSample
 
 from .videos import Pieces, import_exercise, import_florence
 

@@ -10,7 +10,7 @@ from actum.messages import Message, Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_model_trainer.answering import answer, encoded
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 
 from .bench import Bench
 from .ours import OURS, PAPERS

@@ -14,7 +14,8 @@ from actum.recording import Recording
 from actum.skeletons import INDEX
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.confidence import LEAST_MOVEMENT_SHARE, least_movement_m
-from actum_model_trainer.samples import LabelledStream, SegmentSample, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import LabelledStream, SegmentSample
 from scene_simulator.driven_simulator import DrivenSimulator
 from scene_simulator.settings import Settings
 from som_classifier.kinematics import averaged, movement_m

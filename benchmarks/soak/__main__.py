@@ -26,7 +26,7 @@ from actum_command import processes
 from actum_command.model_in_use import ModelInUse
 from actum_command.scene_marks import write_examples
 from actum_command.supervising import Program, Supervisor
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train
 from som_classifier.presets import DEFAULT
 

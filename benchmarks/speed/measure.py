@@ -16,7 +16,8 @@ from benchmarks.throughput import frames_per_second
 from actum.messages import Segment
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
-from actum_model_trainer.samples import Samples, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import Samples
 from actum_model_trainer.training import train, train_to_spot
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings

@@ -5,7 +5,8 @@ from tempfile import TemporaryDirectory
 
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_model_trainer.samples import LabelledStream, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import LabelledStream
 from scene_simulator.free_movement import free_movement
 
 PEOPLE = range(2001, 2017)

@@ -7,7 +7,7 @@ from tempfile import TemporaryDirectory
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train_to_spot
 from scene_simulator.everyday import Pauses
 from som_classifier.model import NOTHING_KEPT, Model

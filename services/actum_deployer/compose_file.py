@@ -6,7 +6,8 @@ from typing import Any
 import yaml
 
 from actum_deployer.credential_folders import SERVICES_USER
-from actum_deployer.deployment import Deployment, Host
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import Host
 from actum_deployer.programs import (
     FILES,
     INSTALLED,

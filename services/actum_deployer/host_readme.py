@@ -4,7 +4,8 @@ from datetime import date
 
 from actum.installing import WHEEL, pip_install
 from actum_deployer.credential_folders import CREDENTIALS, SERVICES_USER
-from actum_deployer.deployment import Deployment, Host
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import Host
 from actum_deployer.programs import FILES, INSTALLED, ROUTER_FILE, SETTINGS, programs
 from actum_deployer.roles import BRIDGE
 from actum_deployer.systemd_units import VENV

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 from actum.settings import PROCESS_ENVIRONMENT
 from actum_deployer.credential_folders import CREDENTIALS
-from actum_deployer.deployment import Deployment, Host
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import Host
 from actum_deployer.roles import BRIDGE, CLASSIFIER, FUSION, GATEWAY, PAGE, ROUTER, TRAINER, Role, identity
 
 INSTALLED = "/etc/actum"

@@ -11,7 +11,8 @@ from actum.runtime.credentials import router_values
 from actum.runtime.session import TRANSPORT
 from actum_deployer.access_control import ADVANCED, access_control
 from actum_deployer.credential_folders import CREDENTIALS
-from actum_deployer.deployment import Deployment, Host
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import Host
 from actum_deployer.programs import INSTALLED
 from actum_deployer.roles import IMAGES, ROLES, ROUTER
 

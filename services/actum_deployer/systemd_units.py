@@ -7,7 +7,8 @@ renewed only once it is started anew.
 """
 
 from actum_deployer.credential_folders import CREDENTIALS
-from actum_deployer.deployment import Deployment, Host
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import Host
 from actum_deployer.programs import (
     FILES,
     INSTALLED,

@@ -17,8 +17,9 @@ from actum_deployer.credential_folders import (
     passwords_of,
     write_credentials,
 )
-from actum_deployer.deployment import FILE, Deployment, Host
+from actum_deployer.deployment import FILE, Deployment
 from actum_deployer.host_readme import OWNERS, UNITS, USERS, readme, settings_file
+from actum_deployer.hosts import Host
 from actum_deployer.programs import FILES, ROUTER_FILE, SETTINGS
 from actum_deployer.router_file import router_file
 from actum_deployer.systemd_units import owners, units, users

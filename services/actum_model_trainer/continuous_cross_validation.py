@@ -8,7 +8,7 @@ from actum_model_trainer.continuous.detections import Detection, Found, point_fr
 from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.cross_validation import people_of
 from actum_model_trainer.progress import Progress, prefixed, silent
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train_to_spot
 from som_classifier.model import Model
 from som_classifier.presets import Preset

@@ -7,7 +7,8 @@ from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.evaluation import Evaluation, Prediction, prediction, segment_labels
 from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.recorded_segments import sensors
-from actum_model_trainer.samples import SegmentSample, Unusable, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import SegmentSample, Unusable
 from actum_model_trainer.training import TrainingError, train
 from som_classifier.model import Model
 from som_classifier.presets import Preset

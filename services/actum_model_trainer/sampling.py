@@ -16,7 +16,8 @@ from actum.messages import NONE
 from actum.recording import Recording
 from actum_model_trainer.background import ARRAYS
 from actum_model_trainer.progress import Progress, silent
-from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample, Unusable, each_read
+from actum_model_trainer.sample_reading import each_read
+from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample, Unusable
 
 MOST_SEGMENTS = 10_000
 """Labelled segments that are kept, as many of each action as possible: with 100 actions 100 of each. Each takes about

@@ -12,7 +12,7 @@ from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.evaluation import Evaluation, Prediction, prediction
 from actum_model_trainer.progress import Progress, prefixed, silent
 from actum_model_trainer.provenance import actions_of
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train_to_spot
 from model_trainer.folds import folds_of
 from som_classifier.presets import Preset

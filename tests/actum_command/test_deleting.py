@@ -11,7 +11,7 @@ from actum.messages import Agent, Intent, Skeleton, segment_marks
 from actum.recording import Recording
 from actum_examples.stored_changes import mirror_image
 from actum_examples.take import MIRRORED
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from command_lines import printed, refused, written
 from empty_messages import contact, intent
 from people import FRAME_NS, reaching, skeleton

@@ -9,7 +9,7 @@ import pytest
 from actum.messages import AUTO, MANUAL, Message, Segment
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from command_lines import printed, refused, written
 from empty_messages import action
 from people import FRAME_NS, reaches

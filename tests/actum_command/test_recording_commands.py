@@ -18,7 +18,7 @@ from actum.runtime import Received
 from actum_command import streaming
 from actum_command.commands import recording_commands
 from actum_examples.cutting import counting
-from actum_model_trainer.samples import select
+from actum_model_trainer.sample_reading import select
 from command_lines import invoke, refused, written
 from empty_messages import image, mark, skeleton, status
 from people import FRAME_NS

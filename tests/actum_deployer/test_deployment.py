@@ -6,7 +6,8 @@ import pytest
 
 from actum.keys import InvalidKeyError
 from actum.settings import SettingsError
-from actum_deployer.deployment import Deployment, Host, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import Host, hosts_of
 
 
 def test_a_camera_and_a_host_that_computes() -> None:

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from actum.keys import CHUNK, InvalidKeyError
 from actum.settings import SettingsError
 from actum_deployer.access_control import access_control
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 from actum_deployer.roles import GATEWAY, PREPROCESSOR, ROLES, common_name, identity
 from actum_deployer.writing import write_deployment
 

@@ -12,7 +12,8 @@ from actum.node import replay
 from actum.settings import NodeSettings
 from actum_command.service_settings import SETTINGS
 from actum_deployer.access_control import TOLD, access_control, link_rules, rules
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 from actum_deployer.roles import BRIDGE, GATEWAY, IMAGES, PAGE, PEOPLES, ROBOT, ROLES, SWITCH, VIEWER, Role, identity
 from conftest import NEEDS_ROS2_EXTRA
 from marker_tracker.node import MarkerTracker

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from actum.atomic_file import write_whole
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 from actum_deployer.writing import write_deployment
 
 HOSTS = hosts_of("camera=192.168.1.5,compute=192.168.1.6")

@@ -11,7 +11,8 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 from actum_deployer.writing import write_deployment
 
 ROOTS = os.geteuid() == 0 and bool(shutil.which("systemd-tmpfiles") and shutil.which("systemd-sysusers"))

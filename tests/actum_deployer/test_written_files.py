@@ -12,7 +12,8 @@ from actum.runtime.credentials import check
 from actum.runtime.router import router_config
 from actum.settings import SettingsError
 from actum_deployer.credential_folders import SERVICES_USER
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 from actum_deployer.writing import write_deployment
 from compose_files import DEPLOY, MAIN, services_of
 

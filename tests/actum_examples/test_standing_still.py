@@ -10,7 +10,7 @@ import pytest
 from actum.messages import Action, Segment, Skeleton
 from actum.recorder import write_recording
 from actum.recording import Recording
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings

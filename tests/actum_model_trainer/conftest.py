@@ -9,7 +9,8 @@ import pytest
 from actum.messages import Segment, Skeleton
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import SegmentSample
 from performers import HAND_PATHS, performance
 
 Record = Callable[..., Recording]

@@ -9,7 +9,7 @@ from actum.messages import Posture, Segment, Skeleton
 from actum.node import SECOND_NS
 from actum.recorder import Recorder
 from actum.recording import Recording
-from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.sample_reading import samples_from, select
 from people import FRAME_NS, skeleton
 from performers import FRAMES, PAUSE_FRAMES, mark, performance
 from pose_preprocessor.node import PosePreprocessor

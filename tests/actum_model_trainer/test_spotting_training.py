@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from actum.messages import Segment, Skeleton
 from actum.node import SECOND_NS
 from actum_model_trainer.provenance import TrainingError
-from actum_model_trainer.samples import LabelledStream, Samples, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import LabelledStream, Samples
 from actum_model_trainer.spotting.common_head import mixed_heads, with_common
 from actum_model_trainer.spotting.encoded_stream import EncodedStream
 from actum_model_trainer.spotting.heads_training import fit_heads

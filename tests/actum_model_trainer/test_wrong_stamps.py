@@ -13,7 +13,7 @@ from actum_examples.cutting.courses import recorded_courses
 from actum_examples.take import read_take
 from actum_model_trainer.evaluation import segment_labels
 from actum_model_trainer.recorded_segments import classifier_input, closed_segments
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.spotting.training_windows import training_windows
 from model_trainer.film import films_of
 from performers import mark as labelled

@@ -21,7 +21,7 @@ from actum.recording import Recording
 from actum_dataset_importer.importing import import_msrc12_composed
 from actum_dataset_importer.msrc12 import GESTURES
 from actum_model_trainer.continuous.detections import Detection, Truth
-from actum_model_trainer.samples import select
+from actum_model_trainer.sample_reading import select
 from msrc12_streams import lifting, written
 from performers import performance
 

@@ -14,7 +14,7 @@ from actum.recording import Recording
 from actum_model_trainer.baseline import hand_paths
 from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.evaluation import segment_labels
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from model_trainer import recent_frames
 from model_trainer.folds import folds_of
 from model_trainer.recent_frames import SLACK_NS, RecentFrames

@@ -14,7 +14,7 @@ from actum.commands import Refusal
 from actum.messages import Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
-from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.sample_reading import samples_from, select
 from model_trainer.names import checked_name
 from teaching import GOGGLINGS, WAVES, Teacher
 

@@ -5,7 +5,7 @@ import pytest
 
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train
 from live import System, system
 from models import QUICK

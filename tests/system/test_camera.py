@@ -14,7 +14,7 @@ from actum.recording import Recording
 from actum.runtime import Client, Listening
 from actum_dataset_importer.clips import Naming
 from actum_dataset_importer.importing import import_video
-from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.sample_reading import samples_from, select
 from actum_model_trainer.training import train
 from live import System, collect, wait_until
 from models import QUICK

@@ -15,7 +15,7 @@ from actum_dataset_importer.importing import import_msr_action3d, import_utkinec
 from actum_dataset_importer.msr_action3d import EXCLUDED, NAME, sequence_files
 from actum_dataset_importer.utkinect import LABELS
 from actum_model_trainer.evaluation import Evaluation, evaluate
-from actum_model_trainer.samples import samples_from, select
+from actum_model_trainer.sample_reading import samples_from, select
 from actum_model_trainer.training import train
 from live import System, collect
 from models import QUICK, QUICK_PAPER

@@ -11,7 +11,7 @@ from actum.recording import Recording
 from actum_command.scene_marks import write_examples
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import found_by
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train_to_spot
 from live import PATIENCE_S, System, collect
 from models import QUICK

@@ -11,7 +11,8 @@ from actum.runtime import needs_extra
 from actum.settings import SettingsError
 from actum_command.commands.plain_help import PlainTyper
 from actum_command.commands.terminal import fail, failing_on, say
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 
 app = PlainTyper(
     no_args_is_help=True,

@@ -10,7 +10,7 @@ import typer
 from actum.recorder import TakenError, refuse_taken
 from actum.recording import Recording, RecordingError
 from actum_command.commands.terminal import fail, failing_on, refuse_unwritable, say
-from actum_model_trainer.samples import select
+from actum_model_trainer.sample_reading import select
 
 PersonOption = Annotated[
     str | None,

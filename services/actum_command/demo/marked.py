@@ -21,7 +21,7 @@ from actum_command.simulated_model import ACTOR, TRAINING_SEED
 from actum_model_trainer.baseline import nearest_neighbour
 from actum_model_trainer.evaluation import Evaluation, evaluate, wilson_interval
 from actum_model_trainer.progress import Progress
-from actum_model_trainer.samples import samples_from
+from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train
 from scene_simulator.programme import ACTIONS
 from som_classifier.model_loading import load_model
