@@ -18,6 +18,7 @@ with needs_extra("actum-command"):
         foxglove_commands,
         inspect_command,
         label_commands,
+        play_command,
         pose_model_commands,
         recording_commands,
         scene_commands,
@@ -77,7 +78,7 @@ app.command("up")(with_router_flags(system_commands.up, NodeSettings))
 app.command("router")(system_commands.router)
 app.add_typer(segment_commands.app, name="segment")
 app.command("record")(with_router_flags(recording_commands.record))
-app.command("play")(with_router_flags(recording_commands.play))
+app.command("play")(with_router_flags(play_command.play))
 app.add_typer(label_commands.app, name="label")
 _add_picture_commands()
 app.add_typer(pose_model_commands.app, name="models")

@@ -16,7 +16,7 @@ from actum.recorder import Recorder, StoredRecorder
 from actum.recording import Recording
 from actum.runtime import Received
 from actum_command import streaming
-from actum_command.commands import recording_commands
+from actum_command.commands import play_command, recording_commands
 from actum_examples.cutting import counting
 from actum_model_trainer.sample_reading import select
 from command_lines import invoke, refused, written
@@ -70,8 +70,9 @@ class Live:
 def live(monkeypatch: pytest.MonkeyPatch) -> Live:
     stop = threading.Event()
     client = Live(stop)
-    monkeypatch.setattr(recording_commands, "connect", lambda: client)
-    monkeypatch.setattr(recording_commands, "stop_on_signals", lambda: stop)
+    for command in (recording_commands, play_command):
+        monkeypatch.setattr(command, "connect", lambda: client)
+        monkeypatch.setattr(command, "stop_on_signals", lambda: stop)
     monkeypatch.setattr(streaming, "LEAD_IN_S", 0.0)
     monkeypatch.setattr(streaming, "ON_ITS_WAY_S", 0.0)
     return client

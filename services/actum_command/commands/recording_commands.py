@@ -1,4 +1,4 @@
-"""`actum record` and `actum play`: streams to files and back."""
+"""`actum record`: streams to files."""
 
 import threading
 import time
@@ -16,17 +16,16 @@ from actum.recording import RecordingError
 from actum.rewriting import finish as finished
 from actum.rewriting import rewrite, unchanged
 from actum.runtime import stop_on_signals
-from actum_command.commands.recording_options import AllOption, PersonOption, chosen, refuse_output, tell_unread
+from actum_command.commands.recording_options import refuse_output
 from actum_command.commands.service_flags import with_flags_of
-from actum_command.commands.terminal import connect, fail, failing_on, say
+from actum_command.commands.terminal import connect, fail, say
 from actum_command.history.event_recorder import keep_events
 from actum_command.segment_lines import cut_lines
 from actum_command.service_settings import HISTORY, Given, arguments_of
-from actum_command.streaming import put_all, store_all
+from actum_command.streaming import store_all
 from actum_examples.repetition_recorder import RepetitionRecorder
 from actum_examples.stream_recorder import IMAGES, STREAMS, StreamRecorder
 
-WAIT_S = 5.0  # how long to wait for a preprocessor that is starting to subscribe
 ALL = "all"
 """The value of `--marks` for every origin."""
 
@@ -239,23 +238,3 @@ def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
 
 def _listed(counts: Counter[str]) -> str:
     return ", ".join(f"{kind} {count}" for kind, count in sorted(counts.items()))
-
-
-def play(
-    files: Annotated[
-        list[Path], typer.Argument(help="recordings, or folders of recordings, which are played one after another")
-    ],
-    speed: Annotated[float, typer.Option(min=0.01, help="playback speed; 1 is real time, 2 is twice as fast")] = 1.0,
-    person: PersonOption = None,
-    with_excluded: AllOption = False,
-) -> None:
-    """Play recordings as if they were a live sensor: publish frames and the start and end of actions, but no labels."""
-    recordings = chosen(files, person, with_excluded)
-    stop = stop_on_signals()
-    with connect() as client:
-        if not client.wait_for_subscriber(keys.SKELETON, WAIT_S):
-            fail(f"no service receives skeletons on {keys.key(keys.SKELETON, client.sensor)}: start pose_preprocessor")
-        with failing_on(RecordingError):
-            count = put_all(client, recordings, speed, stop)
-    tell_unread(recordings)
-    say(f"played {len(recordings)} recordings: {count} messages")
