@@ -1,11 +1,12 @@
 """Somebody before a camera as the page sees it, in real time, without a router."""
 
 import threading
+import time
 from collections.abc import Iterator
 from typing import Any
 
 from actum.messages import Action, Intended, Message, Objects, Status, TrackedObject
-from actum.node import SECOND_NS
+from actum.node import SECOND_NS, Tick
 from dashboards import Served
 from empty_messages import contact, intent
 from events import event
@@ -74,6 +75,13 @@ class Scene:
         self.contact = None
         if not silently:
             self.page.give(intent(self.stamp_ns))
+
+    def measured(self) -> set[str]:
+        """Put the status of the page's service; return the messages of which it has measured the time."""
+        node = self.page.node
+        node.handle(Tick(time.monotonic_ns()))
+        self.page.give(status(node.name, self.stamp_ns).model_copy(update={"hops": node.counters.hops}))
+        return {hop.effect for hop in node.counters.hops}
 
     def answer(self, segment_id: str, sentence: str, confidence: float = 0.9) -> None:
         """Put an early answer, a final action and the event of one segment that ends now."""

@@ -22,7 +22,7 @@ SUFFIXES = {"_ns": "ns", "_m": "m", "_mps": "m/s", "_deg": "°", "_ms": "ms", "_
 UNITS = {
     "seq": "count", "agent": "id", "agents": "id", "id": "id", "object_id": "id",
     "objects_present": "id", "frames": "count", "missed": "count", "handled": "count", "drops": "count",
-    "rejects": "count", "counts": "count", "rates": "Hz", "rate_hz": "Hz", "confidence": "0 to 1",
+    "rejects": "count", "counts": "count", "count": "count", "rates": "Hz", "rate_hz": "Hz", "confidence": "0 to 1",
     "activations": "−1 to 1", "familiarity": "0 to 1", "completeness": "0 to 1",
     "probability": "0 to 1", "action_probability": "0 to 1",
     "quaternion_xyzw": "1", "up_in_camera": "any length", "width": "px", "height": "px", "K": "px", "distortion": "1",

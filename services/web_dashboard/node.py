@@ -1,13 +1,15 @@
 """The page's service: takes what is put on the sensor's keys, and gives it to the browsers."""
 
 import logging
+import time
 from collections import deque
 from collections.abc import Iterable
 from contextlib import AbstractContextManager
 
 from actum import keys
+from actum.hops import Hops
 from actum.messages import Image, Message
-from actum.node import Counters, Tick
+from actum.node import SECOND_NS, Counters, Tick
 from actum.runtime import Client
 from web_dashboard.application import application
 from web_dashboard.encoding import envelope_of
@@ -46,6 +48,8 @@ class WebDashboard:
         self._hub = hub
         self._orders = orders
         self._server = server
+        self._hops = Hops(time.monotonic_ns)
+        self._measured_s = 0
 
     @classmethod
     def configured(cls, settings: Settings) -> "WebDashboard":
@@ -59,17 +63,26 @@ class WebDashboard:
         return cls(settings, hub, orders, PageServer(application(settings, hub, orders), listening, settings.page_host))
 
     def handle(self, message: Message | Tick) -> Iterable[Message]:
-        """Give a message to the browsers; at a tick, count what browsers were refused."""
+        """Give a message to the browsers, and measure how long after its cause it came; at a tick, report."""
         if isinstance(message, Tick):
-            if not self._server.working:
-                raise RuntimeError("the web server of the page stopped unexpectedly: see the messages before this one")
-            while self._orders.refused:
-                self.counters.reject("refused_browser", self._orders.refused.popleft())
-            if self._hub.left_out:
-                self.counters.counts["left_out"] = self._hub.left_out
-        elif self._hub.watched or not isinstance(message, Image):
+            self._report(message)
+            return ()
+        self._hops.receive(message)
+        if self._hub.watched or not isinstance(message, Image):
             self._hub.publish(envelope_of(message))
         return ()
+
+    def _report(self, tick: Tick) -> None:
+        """Count what browsers were refused and did not get, and once a second report where the time goes."""
+        if not self._server.working:
+            raise RuntimeError("the web server of the page stopped unexpectedly: see the messages before this one")
+        while self._orders.refused:
+            self.counters.reject("refused_browser", self._orders.refused.popleft())
+        if self._hub.left_out:
+            self.counters.counts["left_out"] = self._hub.left_out
+        if tick.monotonic_ns // SECOND_NS != self._measured_s:
+            self._measured_s = tick.monotonic_ns // SECOND_NS
+            self.counters.hops = self._hops.times()
 
     def serving(self) -> AbstractContextManager[None]:
         """Serve browsers, also while there is no router yet."""

@@ -7,7 +7,7 @@ from typing import Protocol, runtime_checkable
 
 from actum import keys
 from actum.codec import encodable
-from actum.messages import Message
+from actum.messages import HopTime, Message
 from actum.states import State
 
 SECOND_NS = 1_000_000_000
@@ -34,7 +34,8 @@ class Counters:
     """A node's counters: rejected inputs by kind, the text of the newest error, and the node's state in a word or two.
 
     `counts` is of what else happened and is no fault. `details` names the `model`, the `calibration` or the `source` in
-    use, and the source's `rate_hz`, for the message `info`.
+    use, and the source's `rate_hz`, for the message `info`. `hops` is how long messages took, as the page's service has
+    measured it.
     """
 
     rejects: Counter[str] = field(default_factory=Counter)
@@ -42,6 +43,7 @@ class Counters:
     state: str = State.RUNNING
     counts: Counter[str] = field(default_factory=Counter)
     details: dict[str, str] = field(default_factory=dict)
+    hops: list[HopTime] = field(default_factory=list)
 
     @property
     def told_state(self) -> str:

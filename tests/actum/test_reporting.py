@@ -3,6 +3,7 @@ import threading
 import pytest
 
 from actum.codec import decode, encode
+from actum.messages import HopTime
 from actum.node import Counters
 from actum.runtime.reporting import MOST_KEYS, MOST_ORIGINS, Meter, Reporter
 from actum.settings import ServiceSettings
@@ -55,6 +56,12 @@ def test_latencies_are_reported_as_percentiles() -> None:
     for milliseconds in range(101):
         watched.took(float(milliseconds))
     assert watched.status().latency_ms == {"p50": 50.0, "p99": 99.0}
+
+
+def test_the_times_between_messages_that_a_node_measures_are_in_its_status() -> None:
+    counters = Counters(hops=[HopTime(cause="skeleton", effect="posture", count=1, p50_ms=2.0, p99_ms=2.0)])
+    frame = encode(Meter("web_dashboard", counters, ServiceSettings()).status())
+    assert decode(frame.key, frame.payload, frame.encoding).hops == counters.hops
 
 
 def test_gaps_between_final_actions_of_before_are_no_losses() -> None:

@@ -1,5 +1,6 @@
 """The live view in a browser: it shows what goes on, says what it waits for, and can be used by everybody."""
 
+import re
 from collections.abc import Callable
 from io import BytesIO
 from typing import Any
@@ -136,6 +137,17 @@ def test_each_service_has_its_row(scene: Scene, open_page: Open) -> None:
     row.locator("td", has_text="1.0 / 2.0 ms").wait_for()
     row.locator("summary").click()
     assert "skeleton 30" in row.locator("dl").text_content()
+
+
+def test_below_the_services_stands_where_the_time_goes(scene: Scene, open_page: Open) -> None:
+    page = open_page(scene.page.address)
+    hops = page.locator("#health .hops")
+    assert hops.is_hidden(), "nothing has been measured"
+    wait_until(lambda: "posture" in scene.measured(), "it is measured from which skeleton each posture follows")
+    row = hops.locator("tr", has_text="skeleton → posture")
+    row.get_by_text(re.compile(r"^\d+\.\d ms$")).first.wait_for()
+    [p50, p99, count] = row.locator("td").all_text_contents()
+    assert float(p50.removesuffix(" ms")) <= float(p99.removesuffix(" ms")) and int(count.removesuffix(" ×")) > 0
 
 
 def hold_space(page: Any) -> None:

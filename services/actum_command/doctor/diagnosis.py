@@ -40,7 +40,7 @@ def examine(client: Client) -> Examination:
     names = [*EXPECTED, *sorted({*heard.tokens, *heard.statuses} - set(EXPECTED))]
     problems = (*partly_denied(heard), *stream_checks.problems(heard.infos, heard.statuses, heard.streams))
     clocks = clock_remarks(clock_offsets(heard.answers))
-    facts = (*stream_checks.hops(heard.streams), *who_serves(heard))
+    facts = (*stream_checks.hops(heard), *who_serves(heard))
     return Examination([finding(name, heard) for name in names], problems, tuple(clocks), facts)
 
 

@@ -9,8 +9,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from actum import keys
+from actum.hops import Hops
 from actum.keys import Topic
-from actum.messages import Action, Image, Info, Message, Skeleton, Status
+from actum.messages import HopTime, Image, Info, Message, Skeleton, Status
 from actum.node import SECOND_NS
 from actum.runtime import Answer, Client, Received
 
@@ -77,8 +78,9 @@ class Heard:
         tokens: the instances that are alive, by service.
         answers: what services answered, several times each.
         statuses: the statuses of each service, in the order they came.
-        streams: skeletons, postures, objects and partial actions, and images where the sensor is on this host.
+        streams: skeletons, postures, objects and actions, and images where the sensor is on this host.
         members: the instances that share the sensor, by service.
+        hops: how long after its cause each message came.
     """
 
     tokens: dict[str, list[str]]
@@ -86,6 +88,7 @@ class Heard:
     statuses: dict[str, list[Status]]
     streams: dict[Topic, Watched]
     members: dict[str, list[str]] = field(default_factory=dict)
+    hops: list[HopTime] = field(default_factory=list)
 
     @property
     def infos(self) -> list[Info]:
@@ -103,8 +106,10 @@ def hear(client: Client) -> Heard:
     topics = [keys.SKELETON, keys.POSTURE, keys.OBJECTS, keys.ACTION]
     if socket.gethostname() in hosts:
         topics.append(keys.COLOR)  # elsewhere they would cross the network for nothing but this
-    statuses, streams = _listened(client, topics)
-    return Heard(_by_service(client.alive()), answers, statuses, streams, _by_service(client.members()))
+    hops = Hops(time.monotonic_ns)
+    statuses, streams = _listened(client, topics, hops)
+    members = _by_service(client.members())
+    return Heard(_by_service(client.alive()), answers, statuses, streams, members, hops.times())
 
 
 def _by_service(tokens: Iterable[str]) -> dict[str, list[str]]:
@@ -117,8 +122,8 @@ def _by_service(tokens: Iterable[str]) -> dict[str, list[str]]:
     return dict(found)
 
 
-def _listened(client: Client, topics: list[Topic]) -> tuple[dict[str, list[Status]], dict[Topic, Watched]]:
-    """Return the statuses that come within `STATUS_S`, by service, and what comes on some topics."""
+def _listened(client: Client, topics: list[Topic], hops: Hops) -> tuple[dict[str, list[Status]], dict[Topic, Watched]]:
+    """Return the statuses that come within `STATUS_S`, by service, and what comes on some topics; measure its hops."""
     statuses: defaultdict[str, list[Status]] = defaultdict(list)
     streams = {topic: Watched() for topic in (*topics, keys.COLOR)}
     lock, is_over = threading.Lock(), threading.Event()
@@ -130,8 +135,9 @@ def _listened(client: Client, topics: list[Topic]) -> tuple[dict[str, list[Statu
                 return
             if isinstance(message, Status):
                 statuses[message.service].append(message)
-            elif not (isinstance(message, Action) and message.final):
+            else:
                 streams[keys.address_of(message).topic].receive(message, arrival_ns)
+                hops.receive(message)
 
     for topic in (keys.STATUS, *topics):
         client.follow(keys.pattern(topic, client.sensor), take)

@@ -3,13 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 
-import numpy as np
-
 from actum import keys
 from actum.keys import Topic
 from actum.messages import Info, Status
 from actum.states import State
-from actum_command.doctor.heard import Watched
+from actum_command.doctor.heard import Heard, Watched
 
 SENSOR = "sensor_gateway"
 """The service that puts skeletons and images."""
@@ -24,8 +22,6 @@ SLOW = 0.6
 """Share of a rate below which it is told: a busy machine delays frames, and they come all the same."""
 FEWEST_HZ = 2.0
 """Least rate (Hz) of which missing messages are told: of a slower stream two seconds show too little."""
-FEWEST_PAIRS = 20
-"""Fewest pairs of a skeleton and what follows from it of whose latency anything is said."""
 MEASURED_S = 1.0
 """Least time (s) between two statuses from which rates are measured."""
 
@@ -43,17 +39,12 @@ def problems(infos: Sequence[Info], statuses: Statuses, streams: Mapping[Topic, 
     yield from _readers(statuses, put_hz)
 
 
-def hops(streams: Mapping[Topic, Watched]) -> Iterator[str]:
-    """Yield how long after a skeleton its postures and partial actions come here: half of them, and 99 of 100."""
-    skeletons = streams[keys.SKELETON]
-    came_ns = dict(zip(skeletons.stamps_ns, skeletons.arrivals_ns, strict=True))
-    for topic, name in ((keys.POSTURE, "posture"), (keys.ACTION, "partial action")):
-        stream = streams.get(topic, Watched())
-        pairs = zip(stream.stamps_ns, stream.arrivals_ns, strict=True)
-        took_ms = [(arrival_ns - came_ns[stamp_ns]) / 1e6 for stamp_ns, arrival_ns in pairs if stamp_ns in came_ns]
-        if len(took_ms) >= FEWEST_PAIRS:
-            p50_ms, p99_ms = np.percentile(took_ms, [50, 99]).tolist()
-            yield f"skeleton → {name}: p50 {p50_ms:.1f} ms, p99 {p99_ms:.1f} ms, measured where doctor runs"
+def hops(heard: Heard) -> Iterator[str]:
+    """Yield how long each hop takes: as the page's service measured it; if there is no page, as heard here."""
+    reported = [status.hops for statuses in heard.statuses.values() for status in statuses[-1:] if status.hops]
+    where = "in the last minute, measured by web_dashboard" if reported else "measured where doctor runs"
+    for hop in reported[0] if reported else heard.hops:
+        yield f"{hop.cause} → {hop.effect}: p50 {hop.p50_ms:.1f} ms, p99 {hop.p99_ms:.1f} ms ({hop.count} {where})"
 
 
 def handled_hz(statuses: Sequence[Status], topic: Topic) -> float | None:

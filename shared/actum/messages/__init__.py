@@ -42,7 +42,7 @@ from actum.messages.recognised import (
     Tensor,
     WhyHeldBack,
 )
-from actum.messages.reported import Info, Status, Truth
+from actum.messages.reported import HopTime, Info, Status, Truth
 from actum.messages.seen import Agent, Image, Objects, Posture, Skeleton, TrackedObject
 from actum.messages.taught import JobState, TakeState, Training
 
@@ -82,6 +82,7 @@ __all__ = [
     "Hand",
     "HeldBack",
     "HeldObject",
+    "HopTime",
     "Image",
     "Info",
     "Intended",

@@ -4,7 +4,22 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from actum.messages.base import FinitePoint, Hand, Message, Name, SegmentId
+from actum.messages.base import FinitePoint, Hand, Message, Model, Name, SegmentId
+
+
+class HopTime(Model):
+    """How long after its cause a message is received, over the last minute, by the clock of the receiving service."""
+
+    cause: str
+    """The earlier message, such as `skeleton` or `end mark`."""
+    effect: str
+    """The later message, such as `posture` or `event`."""
+    count: int
+    """Pairs in the last minute."""
+    p50_ms: float
+    """Median time (ms), right to 2.5 %."""
+    p99_ms: float
+    """Time (ms) that 99 of 100 pairs do not exceed, right to 2.5 %; with fewer than a hundred pairs the longest."""
 
 
 class Status(Message):
@@ -34,6 +49,8 @@ class Status(Message):
     counts: dict[str, int] = Field({})
     """What else happened since the start and is no fault, by kind: the classifier counts here the actions that it
     found without marks, and what became of them."""
+    hops: list[HopTime] = Field([])
+    """Where the time goes between messages, as the page's service receives them; empty for other services."""
 
 
 class Info(Message):

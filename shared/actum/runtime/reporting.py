@@ -101,6 +101,7 @@ class Meter:
             latency_ms=_percentiles(list(self._latencies_ms)),
             state=self._counters.told_state,
             counts=dict(self._counters.counts),
+            hops=self._counters.hops,
         )
 
     def info(self) -> Info:

@@ -1,12 +1,9 @@
 """What doctor prints that is no problem: who serves whom, and how long a hop takes."""
 
-from actum import keys
+from actum.messages import HopTime, Status
 from actum_command.doctor.diagnosis import who_serves
-from actum_command.doctor.heard import Heard, Watched
-from actum_command.doctor.stream_checks import FEWEST_PAIRS, hops
-
-MILLISECOND_NS = 1_000_000
-FRAME_NS = 33 * MILLISECOND_NS
+from actum_command.doctor.heard import Heard
+from actum_command.doctor.stream_checks import hops
 
 
 def test_a_line_says_who_serves_a_shared_sensor_and_who_stands_by() -> None:
@@ -17,13 +14,24 @@ def test_a_line_says_who_serves_a_shared_sensor_and_who_stands_by() -> None:
     ]
 
 
-def test_a_hop_is_measured_between_messages_of_one_stamp() -> None:
-    streams = {topic: Watched() for topic in (keys.SKELETON, keys.POSTURE, keys.ACTION)}
-    for number in range(FEWEST_PAIRS):
-        stamp_ns, late_ns = number * FRAME_NS, (2 if number else 9) * MILLISECOND_NS
-        streams[keys.SKELETON].stamps_ns.append(stamp_ns)
-        streams[keys.SKELETON].arrivals_ns.append(stamp_ns)
-        streams[keys.POSTURE].stamps_ns.append(stamp_ns)
-        streams[keys.POSTURE].arrivals_ns.append(stamp_ns + late_ns)
-    [line] = hops(streams)
-    assert line.startswith("skeleton → posture: p50 2.0 ms, p99 7.7 ms")
+def status(service: str, *hops: HopTime) -> Status:
+    return Status(
+        stamp_ns=1, sensor="kinect0", service=service, instance="a", uptime_s=1.0, rates={}, handled={}, drops={},
+        rejects={}, last_error=None, latency_ms={}, state="running", hops=list(hops),
+    )  # fmt: skip
+
+
+def test_hops_are_those_of_the_last_minute_where_the_page_measures_them() -> None:
+    reported = HopTime(cause="skeleton", effect="posture", count=1800, p50_ms=2.04, p99_ms=7.66)
+    heard_here = HopTime(cause="skeleton", effect="posture", count=45, p50_ms=1.0, p99_ms=1.0)
+    statuses = {"som_classifier": [status("som_classifier")], "web_dashboard": [status("web_dashboard", reported)]}
+    assert list(hops(Heard({}, [], statuses, {}, hops=[heard_here]))) == [
+        "skeleton → posture: p50 2.0 ms, p99 7.7 ms (1800 in the last minute, measured by web_dashboard)"
+    ]
+
+
+def test_without_a_page_hops_are_those_that_doctor_has_heard_itself() -> None:
+    heard_here = HopTime(cause="end mark", effect="event", count=3, p50_ms=61.0, p99_ms=90.4)
+    assert list(hops(Heard({}, [], {"som_classifier": [status("som_classifier")]}, {}, hops=[heard_here]))) == [
+        "end mark → event: p50 61.0 ms, p99 90.4 ms (3 measured where doctor runs)"
+    ]

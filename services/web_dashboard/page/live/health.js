@@ -1,8 +1,9 @@
-// The services: whether each is there, what it does, how fast, and what it lost or refused.
+// The services: whether each is there, what it does, how fast, and what it lost or refused; and where the time goes.
 
 import { card, element } from "../elements.js";
 import { link } from "../link.js";
 import { isThere } from "../waiting.js";
+import { hops } from "./hops.js";
 
 const HEADS = ["Service", "State", "Messages/s", "Latency p50 / p99", "Lost", "Refused", "Up"];
 const ORDER = ["sensor_gateway", "pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion", "model_trainer", "web_dashboard"];
@@ -23,7 +24,7 @@ export function health() {
   });
   setInterval(() => rows.forEach((row) => row.show()), 1000);
   const scrolled = element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "Table of services" }, table);
-  return card("health", "Services", { wide: true }, scrolled);
+  return card("health", "Services", { wide: true }, scrolled, hops());
 }
 
 function add(body, name) {
