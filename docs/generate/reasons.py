@@ -147,7 +147,7 @@ OF_FRAMES: Mapping[str, Problem] = {
     ),
     "it gives no more pictures": Problem("A device or stream has stopped.", "Check cable and network."),
     "it was closed": Problem("The gateway is stopping.", "Nothing."),
-    "the camera sent no picture for … s: if this repeats, plug it in again": Problem(
+    "the camera sent no picture for … s: if this repeats, unplug the camera and plug it in again": Problem(
         "The device opened, but is silent.", "Unplug it and plug it in again."
     ),
     "OpenCV says: …": Problem("OpenCV failed on the device or stream.", "Read OpenCV's message after the colon."),

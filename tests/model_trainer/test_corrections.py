@@ -73,7 +73,7 @@ def test_only_the_frames_of_the_event_and_of_who_acted_are_stored(teacher: Teach
 
 def test_what_is_too_long_or_ends_before_it_starts_is_refused(teacher: Teacher) -> None:
     for end_ns in (event()["start_ns"], event()["start_ns"] + 61 * SECOND_NS):
-        with pytest.raises(Refusal, match="has to end after it starts"):
+        with pytest.raises(Refusal, match="end_ns has to be later than start_ns"):
             teacher.ask("correct", **event(end_ns=end_ns))
 
 

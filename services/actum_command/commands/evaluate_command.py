@@ -202,10 +202,13 @@ def _evaluate_intents(recordings: Sequence[Recording], json_file: Path | None) -
         scores = intent_scores(recorded, progress) if recorded.contacts else None
     tell_unread(recordings)
     if not recorded.takes:
-        fail("the given recordings contain nobody together with an object: record while objects are tracked")
+        fail(
+            "the given recordings show no person and tracked object at the same time: record while objects are tracked"
+        )
     if scores is None:
         fail(
-            f"the given recordings contain no contact ({recorded.without_contact} labelled actions without one): "
+            f"the given recordings contain no contact of a hand with an object ({recorded.without_contact} labelled "
+            "actions, all without contact): "
             "record labelled actions in which a hand moves an object"
         )
     console.print(intent_report(scores, time.monotonic() - began_s))
