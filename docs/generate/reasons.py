@@ -12,27 +12,27 @@ OF_SEGMENTS: Mapping[str, Problem] = {
     "no model": Problem("The classifier has no model.", "Set `--model` or `ACTUM_MODEL`, or train a model."),
     "too few frames: …, at least … are needed": Problem(
         "The segment has too few usable postures.",
-        "Mark a longer time: from before the action begins until it is over.",
+        "Mark longer: from before the action begins until it is over.",
     ),
     "no person": Problem(
         "No posture of any person lies within the segment.", "Check that somebody is in view and the gateway runs."
     ),
     "no person with a usable frame": Problem(
         "None of the postures within the segment is usable; the cause follows in brackets.",
-        "See the cause in the table of rejects.",
+        "See the table of rejects.",
     ),
     "no usable frame": Problem(
         "None of the postures of the marked agent is usable; the cause follows in brackets.",
-        "See the cause in the table of rejects.",
+        "See the table of rejects.",
     ),
     "… (…)": Problem(
         "A reason from this table with its cause in brackets, such as `no usable frame (missing_joint: no torso)`.",
-        "See the row of that reason.",
+        "See that reason.",
     ),
     "end without start": Problem(
         "An end mark arrived without a start mark before it.",
         "Publish the start mark first, with the same `segment_id`. Publish marks with `CongestionControl.BLOCK`, so "
-        "that none is dropped.",
+        "none is dropped.",
     ),
     "end before start": Problem(
         "The end mark has an earlier stamp than the start mark.",
@@ -74,7 +74,7 @@ OF_SEGMENTS: Mapping[str, Problem] = {
         "Mark the action again.",
     ),
     "the classifier was not there: no frame has come since": Problem(
-        "The classifier was started after the segment had ended, and no frame has arrived yet.",
+        "The classifier was started after the segment's end, and no frame has arrived yet.",
         "Check that the gateway runs.",
     ),
     "the classifier had only just started, so it could not date a mark without a stamp": Problem(
@@ -86,20 +86,19 @@ OF_SEGMENTS: Mapping[str, Problem] = {
         "Mark the action again.",
     ),
     "the fusion was not there: no posture has come since": Problem(
-        "The fusion was started after the segment had ended, and no posture has arrived yet.",
+        "The fusion was started after the segment's end, and no posture has arrived yet.",
         "Check that the gateway runs.",
     ),
     "the fusion was not there: no objects have come since": Problem(
-        "The fusion was started after the segment had ended, and no objects have arrived yet, although some were "
-        "published before.",
+        "The fusion was started after the segment's end, and no objects have arrived yet, although there were some.",
         "Check that the tracker runs.",
     ),
     "objects lost: none came for … s of the segment": Problem(
-        "No message with objects arrived for so long, so the object of the action is unknown.",
+        "No message with objects arrived for so long that the action's object is unknown.",
         "Check the network, and whether the marker tracker was restarted. Mark the action again.",
     ),
     "postures lost: none came for … s of the segment": Problem(
-        "No posture arrived for so long, so the object of the action is unknown.",
+        "No posture arrived for so long that the action's object is unknown.",
         "Check the network, and whether the pose preprocessor was restarted. Mark the action again.",
     ),
     "objects lost: the first came … s after the start": Problem(
@@ -120,7 +119,7 @@ OF_SEGMENTS: Mapping[str, Problem] = {
 OF_FRAMES: Mapping[str, Problem] = {
     "…: …": Problem(
         "A kind of reject and its detail, such as `missing_joint: no torso`.",
-        "See the row of that kind in the table of rejects.",
+        "See the table of rejects.",
     ),
     "invalid skeleton": Problem(
         "The source published a skeleton with `valid: false` and no reason.", "Let the source publish a reason."
@@ -135,8 +134,8 @@ OF_FRAMES: Mapping[str, Problem] = {
         "The image has another size than its calibration.", "See the reject `image_size_mismatch`."
     ),
     "camera lost: …": Problem(
-        "The camera gives no pictures; the cause follows, one of the texts in the next rows.",
-        "See the row of the cause. The gateway tries to open the camera again by itself.",
+        "The camera gives no pictures; the cause follows, as in the next rows.",
+        "See the cause. The gateway tries to reopen the camera by itself.",
     ),
     "it cannot be opened": Problem(
         "The device, stream or file does not exist, or another program uses it.", "Check `ACTUM_CAMERA`."
@@ -150,10 +149,10 @@ OF_FRAMES: Mapping[str, Problem] = {
     "the camera sent no picture for … s: if this repeats, unplug the camera and plug it in again": Problem(
         "The device opened, but is silent.", "Unplug it and plug it in again."
     ),
-    "OpenCV says: …": Problem("OpenCV failed on the device or stream.", "Read OpenCV's message after the colon."),
+    "OpenCV says: …": Problem("OpenCV failed on the device or stream.", "Read the message."),
     "no RealSense camera is connected": Problem("librealsense finds no camera.", "Check USB 3 cable and udev rules."),
     "the RealSense camera with serial number … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
-    "librealsense says: …": Problem("librealsense failed.", "Read librealsense's message after the colon."),
+    "librealsense says: …": Problem("librealsense failed.", "Read the message."),
     "the camera sends colour images in the format …; supported: bgr8, …": Problem(
         "The RealSense camera sends a colour format that actum cannot read.", "Set the camera to a supported format."
     ),
@@ -171,12 +170,12 @@ OF_FRAMES: Mapping[str, Problem] = {
     "the camera sends colour images in the format …; only RGB888 is supported": Problem(
         "The OpenNI driver sends a colour format that actum cannot read.", "Use another driver."
     ),
-    "OpenNI says: …": Problem("OpenNI failed.", "Read OpenNI's message after the colon."),
+    "OpenNI says: …": Problem("OpenNI failed.", "Read the message."),
     "black: nothing can be seen; is the lens covered?": Problem(
         "Images have been black for half a second.", "Uncover the lens, or add light."
     ),
     "frozen: the picture has not changed for … s": Problem("The picture repeats bit for bit.", "Restart the camera."),
-    "NiTE says: …": Problem("NiTE failed.", "Read NiTE's message after the colon."),
+    "NiTE says: …": Problem("NiTE failed.", "Read the message."),
     "NiTE, which finds people in depth images, cannot use this camera (…): unset NITE2_REDIST64 and NITE2_REDIST and "
     "restart the gateway, which then finds people with the pose model": Problem(
         "NiTE refuses the device.", "Unset the two environment variables, which NiTE's installer set."

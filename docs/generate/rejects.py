@@ -19,7 +19,7 @@ class Problem:
 
 OF_ALL: Mapping[str, Problem] = {
     "unknown_key": Problem(
-        "A message has a key below `actum/` that is not on this page, or a recording has a channel with such a key.",
+        "A message or a recording's channel has a key below `actum/` that is not on this page.",
         "Correct the key.",
     ),
     "too_large": Problem(
@@ -44,8 +44,8 @@ OF_ALL: Mapping[str, Problem] = {
         "Compare the message with its table on this page or with its JSON Schema.",
     ),
     "wrong_key": Problem(
-        "The message names another sensor, agent or service than its key, or is a depth image on the key of colour "
-        "images, or the reverse.",
+        "The message names another sensor, agent or service than its key, or is a depth image on the colour key, or "
+        "the reverse.",
         "Use the key's `sensor`, `agent` and `service`, or leave `sensor` out.",
     ),
     "unwritable_state": Problem(
@@ -146,7 +146,7 @@ OF_MODELS: Mapping[str, Problem] = {
 OF_CLASSIFIER: Mapping[str, Problem] = {
     "rejected_segment": Problem(
         "The classifier answered a segment without recognising an action; its event has `valid: false`.",
-        "See the event's `reason` in the table of reasons.",
+        "See the event's `reason`.",
     ),
     "too_many_segments": Problem(
         "A segment started while 32 were open; it was rejected at once.",
@@ -207,7 +207,7 @@ OF_FUSION: Mapping[str, Problem] = {
     ),
     "incomplete_segment": Problem(
         "Postures or objects of a segment never arrived, so its object is unknown; its event has `valid: false`.",
-        "See the event's `reason` in the table of reasons.",
+        "See the event's `reason`.",
     ),
     "duplicate_segment": Problem(
         "A final action arrived twice; the second is ignored.", "Look for a second classifier with `actum doctor`."
@@ -216,8 +216,8 @@ OF_FUSION: Mapping[str, Problem] = {
 
 OF_PAGE: Mapping[str, Problem] = {
     "refused_browser": Problem(
-        "The page refused a browser: the request came from another site's page or under an unknown host name, or had "
-        "a wrong token, mark or command.",
+        "A browser was refused: its request came from another site or under an unknown host name, or had a wrong "
+        "token, mark or command.",
         "See the latest error, and [who gets in](page.md#who-gets-in).",
     ),
 }
