@@ -70,8 +70,8 @@ class CorrectionCommands:
             for each in take.examples if is_correction(take) else []:
                 if (each.agent, each.bounds_ns) == (request.agent, bounds_ns):
                     raise Refusal(
-                        f"this event is already in the set {request.set} as {each.label!r}: delete that example on the "
-                        "panel 'Teach' first"
+                        f"this event is already an example of {each.label!r} in the set {request.set}: delete this "
+                        "example on the panel 'Teach' first"
                     )
 
 
