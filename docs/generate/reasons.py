@@ -69,11 +69,11 @@ OF_SEGMENTS: Mapping[str, Problem] = {
         "Frames stopped arriving before the segment's end, and none arrived for ten seconds.",
         "Check the recording, the camera and the network.",
     ),
-    "the classifier was not there: its first frame is … s after the start": Problem(
+    "the classifier started late: its first frame is … s after the segment's start": Problem(
         "The classifier was started after the segment had begun, and earlier frames are no longer kept.",
         "Mark the action again.",
     ),
-    "the classifier was not there: no frame has come since": Problem(
+    "the classifier started late: it has received no frame since its start": Problem(
         "The classifier was started after the segment's end, and no frame has arrived yet.",
         "Check that the gateway runs.",
     ),
@@ -81,15 +81,15 @@ OF_SEGMENTS: Mapping[str, Problem] = {
         "A mark without a stamp means *now*, but this mark may have been published before the classifier was started.",
         "Mark the action again, or give marks stamps on the sensor's clock.",
     ),
-    "the fusion was not there: its first posture is … s after the start": Problem(
+    "the fusion started late: its first posture is … s after the segment's start": Problem(
         "The fusion was started after the segment had begun, and earlier postures are no longer kept.",
         "Mark the action again.",
     ),
-    "the fusion was not there: no posture has come since": Problem(
+    "the fusion started late: it has received no posture since its start": Problem(
         "The fusion was started after the segment's end, and no posture has arrived yet.",
         "Check that the gateway runs.",
     ),
-    "the fusion was not there: no objects have come since": Problem(
+    "the fusion started late: it has received no objects since its start": Problem(
         "The fusion was started after the segment's end, and no objects have arrived yet, although there were some.",
         "Check that the tracker runs.",
     ),
@@ -112,7 +112,7 @@ OF_SEGMENTS: Mapping[str, Problem] = {
     ),
     "rejected without a reason": Problem(
         "A classifier that is not part of actum published `valid: false` without a reason.",
-        "Let that classifier publish a reason.",
+        "Publish a reason.",
     ),
 }
 
@@ -122,10 +122,10 @@ OF_FRAMES: Mapping[str, Problem] = {
         "See the table of rejects.",
     ),
     "invalid skeleton": Problem(
-        "The source published a skeleton with `valid: false` and no reason.", "Let the source publish a reason."
+        "The source published a skeleton with `valid: false` and no reason.", "Publish a reason."
     ),
-    "the source says so": Problem(
-        "The source published an image with `valid: false` and no reason.", "Let the source publish a reason."
+    "the source gave no reason": Problem(
+        "The source published an image with `valid: false` and no reason.", "Publish a reason."
     ),
     "image_size_mismatch: …x…, calibrated for …": Problem(
         "The image has another size than its calibration.", "See the reject `image_size_mismatch`."
@@ -135,7 +135,7 @@ OF_FRAMES: Mapping[str, Problem] = {
     ),
     "camera lost: …": Problem(
         "The camera gives no pictures; the cause follows, as in the next rows.",
-        "See the cause. The gateway tries to reopen the camera by itself.",
+        "See the cause. The gateway reopens the camera by itself.",
     ),
     "it cannot be opened": Problem(
         "The device, stream or file does not exist, or another program uses it.", "Check `ACTUM_CAMERA`."
@@ -154,7 +154,7 @@ OF_FRAMES: Mapping[str, Problem] = {
     "the RealSense camera with serial number … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
     "librealsense says: …": Problem("librealsense failed.", "Read the message."),
     "the camera sends colour images in the format …; supported: bgr8, …": Problem(
-        "The RealSense camera sends a colour format that actum cannot read.", "Set the camera to a supported format."
+        "The RealSense camera sends a colour format that actum cannot read.", "Set a supported format."
     ),
     "no camera that OpenNI 2 supports is connected": Problem(
         "OpenNI 2 finds no camera.", "Install the camera's driver; see [cameras](cameras.md#depth-cameras)."
@@ -178,7 +178,7 @@ OF_FRAMES: Mapping[str, Problem] = {
     "NiTE says: …": Problem("NiTE failed.", "Read the message."),
     "NiTE, which finds people in depth images, cannot use this camera (…): unset NITE2_REDIST64 and NITE2_REDIST and "
     "restart the gateway, which then finds people with the pose model": Problem(
-        "NiTE refuses the device.", "Unset the two environment variables, which NiTE's installer set."
+        "NiTE refuses the device.", "Unset both environment variables."
     ),
 }
 
