@@ -50,8 +50,8 @@ CLASSIFIER = "som_classifier"
 """The service that has the settings of the search."""
 ONLY_LEFT_OUT = "used only with --leave-one-person-out: "
 INTENT_HELP = (
-    "test without a model file how early and how correctly the contacts of hands with objects are foreseen. A contact is "
-    "the first motion of an object in a labelled action; the recordings must contain the objects"
+    "test without a model file how early and how correctly the contacts of hands with objects are foreseen. A contact "
+    "is the first motion of an object in a labelled action; the recordings must contain the objects"
 )
 OF_MODELS = {
     "continuous": "--continuous",
