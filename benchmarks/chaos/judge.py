@@ -25,8 +25,8 @@ OBJECTS = (*CAMERA_HOST, "action_fusion", *ROUTERS, LINK)
 """Those by whose fault it may be unknown where the objects were."""
 REASONS: Mapping[str, Collection[str]] = {
     "the source started anew": ("sensor_gateway killed",),
-    "the classifier was not there": ("som_classifier killed",),
-    "the fusion was not there": ("action_fusion killed",),
+    "the classifier started late": ("som_classifier killed",),
+    "the fusion started late": ("action_fusion killed",),
     "frames lost": FRAMES,
     "no person": FRAMES,
     "no usable frame": FRAMES,

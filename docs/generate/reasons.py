@@ -9,42 +9,50 @@ from docs.generate.markdown import code, table
 from docs.generate.rejects import Problem
 
 OF_SEGMENTS: Mapping[str, Problem] = {
-    "no model": Problem("The classifier has no model.", "Set `--model` or `ACTUM_MODEL`, or train one."),
+    "no model": Problem("The classifier has no model.", "Set `--model` or `ACTUM_MODEL`, or train a model."),
     "too few frames: …, at least … are needed": Problem(
-        "The segment has too few usable postures.", "Mark longer: from before the action begins until it is over."
+        "The segment has too few usable postures.",
+        "Mark longer: from before the action begins until it is over.",
     ),
     "no person": Problem(
-        "No posture of anybody lies within the segment.", "Check that somebody is in view and the gateway runs."
+        "No posture of any person lies within the segment.", "Check that somebody is in view and the gateway runs."
     ),
     "no person with a usable frame": Problem(
-        "None of the postures within the segment is usable; the cause follows in brackets.", "See the rejects above."
+        "None of the postures within the segment is usable; the cause follows in brackets.",
+        "See the table of rejects.",
     ),
     "no usable frame": Problem(
-        "None of the postures of the marked agent is usable; the cause follows in brackets.", "See the rejects above."
+        "None of the postures of the marked agent is usable; the cause follows in brackets.",
+        "See the table of rejects.",
     ),
     "… (…)": Problem(
-        "One of these reasons with its cause: `no usable frame (missing_joint: no torso)`.", "See that reason."
+        "A reason from this table with its cause in brackets, such as `no usable frame (missing_joint: no torso)`.",
+        "See that reason.",
     ),
     "end without start": Problem(
-        "An end mark arrived, but its start never did.",
-        "Publish the start first, with the same `segment_id`; let marks block, not drop.",
+        "An end mark arrived without a start mark before it.",
+        "Publish the start mark first, with the same `segment_id`. Publish marks with `CongestionControl.BLOCK`, so "
+        "none is dropped.",
     ),
     "end before start": Problem(
-        "The end's stamp is before the start's.", "Stamp both on the sensor's clock, or neither."
+        "The end mark has an earlier stamp than the start mark.",
+        "Give both marks stamps on the sensor's clock, or none.",
     ),
     "start without end: no end within 60 s": Problem(
-        "The end is missing, or the segment is longer than 60 s.", "Mark one action at a time, with both ends."
+        "The end mark is missing, or the segment is longer than 60 s.",
+        "Publish a start mark and an end mark for each action.",
     ),
     "start without end: no frame came after the start": Problem(
-        "No posture arrived after the start, and no end within 62 s.",
-        "Check that the gateway runs, and that the stamp is not in the future.",
+        "No posture arrived after the start mark, and no end mark within 62 s.",
+        "Check that the gateway runs, and that the mark's stamp is not in the future.",
     ),
     "start without end: the frames ended … s after the start": Problem(
-        "Postures stopped arriving, and no end arrived within 62 s.",
+        "Postures stopped arriving, and no end mark arrived within 62 s.",
         "Check whether the recording ended or the camera is lost.",
     ),
     "too many open segments: … at the most": Problem(
-        "The segment started while 32 others were open.", "Publish their end marks; see the reject `too_many_segments`."
+        "The segment started while 32 others were open.",
+        "Publish the end marks of those segments; see the reject `too_many_segments`.",
     ),
     "marks are not used: the classifier's setting segments is auto": Problem(
         "The classifier answers only segments that it finds itself.", "Use `--segments both`."
@@ -61,60 +69,73 @@ OF_SEGMENTS: Mapping[str, Problem] = {
         "Frames stopped arriving before the segment's end, and none arrived for ten seconds.",
         "Check the recording, the camera and the network.",
     ),
-    "the classifier was not there: its first frame is … s after the start": Problem(
+    "the classifier started late: its first frame is … s after the segment's start": Problem(
         "The classifier was started after the segment had begun, and earlier frames are no longer kept.",
         "Mark the action again.",
     ),
-    "the classifier was not there: no frame has come since": Problem(
-        "The classifier was started after the segment, and no frame has arrived yet.", "Check that the gateway runs."
+    "the classifier started late: it has received no frame since its start": Problem(
+        "The classifier was started after the segment's end, and no frame has arrived yet.",
+        "Check that the gateway runs.",
     ),
     "the classifier had only just started, so it could not date a mark without a stamp": Problem(
-        "Such a mark means *now*, but may have been published while the classifier was away.",
-        "Mark the action again, or stamp marks on the sensor's clock.",
+        "A mark without a stamp means *now*, but this mark may have been published before the classifier was started.",
+        "Mark the action again, or give marks stamps on the sensor's clock.",
     ),
-    "the fusion was not there: its first posture is … s after the start": Problem(
+    "the fusion started late: its first posture is … s after the segment's start": Problem(
         "The fusion was started after the segment had begun, and earlier postures are no longer kept.",
         "Mark the action again.",
     ),
-    "the fusion was not there: no posture has come since": Problem(
-        "The fusion was started after the segment, and no posture has arrived yet.", "Check that the gateway runs."
+    "the fusion started late: it has received no posture since its start": Problem(
+        "The fusion was started after the segment's end, and no posture has arrived yet.",
+        "Check that the gateway runs.",
     ),
-    "the fusion was not there: no objects have come since": Problem(
-        "The fusion was started after the segment, and no objects have arrived yet, though there were some.",
+    "the fusion started late: it has received no objects since its start": Problem(
+        "The fusion was started after the segment's end, and no objects have arrived yet, although there were some.",
         "Check that the tracker runs.",
     ),
     "objects lost: none came for … s of the segment": Problem(
-        "No message of objects arrived for so long that the object is unknown.",
-        "Check whether the marker tracker was restarted, and the network. Mark the action again.",
+        "No message with objects arrived for so long that the action's object is unknown.",
+        "Check the network, and whether the marker tracker was restarted. Mark the action again.",
     ),
     "postures lost: none came for … s of the segment": Problem(
-        "No posture arrived for so long that the object is unknown.",
-        "Check whether the pose preprocessor was restarted, and the network. Mark the action again.",
+        "No posture arrived for so long that the action's object is unknown.",
+        "Check the network, and whether the pose preprocessor was restarted. Mark the action again.",
     ),
     "objects lost: the first came … s after the start": Problem(
-        "The tracker published no objects before.", "Mark the action again."
+        "The tracker published its first objects only after the segment had started.", "Mark the action again."
     ),
     "the source started anew": Problem(
         "The sensor was restarted while the segment was open, so its stamps do not continue.", "Mark the action again."
     ),
-    "final action without a label or an end": Problem("See the reject `bad_action`.", "See there."),
+    "final action without a label or an end": Problem(
+        "A final action lacks its label or end.", "Correct the program that publishes actions."
+    ),
     "rejected without a reason": Problem(
-        "A classifier that is not ours published `valid: false` without a reason.", "Let it publish one."
+        "A classifier that is not part of actum published `valid: false` without a reason.",
+        "Publish a reason.",
     ),
 }
 
 OF_FRAMES: Mapping[str, Problem] = {
-    "…: …": Problem("A kind of reject and its detail: `missing_joint: no torso`.", "See the reject, above."),
+    "…: …": Problem(
+        "A kind of reject and its detail, such as `missing_joint: no torso`.",
+        "See the table of rejects.",
+    ),
     "invalid skeleton": Problem(
-        "The source published a skeleton with `valid: false` and no reason.", "Let it publish one."
+        "The source published a skeleton with `valid: false` and no reason.", "Publish a reason."
     ),
-    "the source says so": Problem(
-        "The source published an image with `valid: false` and no reason.", "Let it publish one."
+    "the source gave no reason": Problem(
+        "The source published an image with `valid: false` and no reason.", "Publish a reason."
     ),
-    "image_size_mismatch: …x…, calibrated for …": Problem("See the reject.", "See there."),
-    "image_size_mismatch: …x…, calibrated for …x…": Problem("See the reject.", "See there."),
+    "image_size_mismatch: …x…, calibrated for …": Problem(
+        "The image has another size than its calibration.", "See the reject `image_size_mismatch`."
+    ),
+    "image_size_mismatch: …x…, calibrated for …x…": Problem(
+        "The image has another size than its calibration.", "See the reject `image_size_mismatch`."
+    ),
     "camera lost: …": Problem(
-        "The camera gives no pictures; one of the next lines follows.", "The gateway opens it again by itself."
+        "The camera gives no pictures; the cause follows, as in the next rows.",
+        "See the cause. The gateway reopens the camera by itself.",
     ),
     "it cannot be opened": Problem(
         "The device, stream or file does not exist, or another program uses it.", "Check `ACTUM_CAMERA`."
@@ -125,15 +146,15 @@ OF_FRAMES: Mapping[str, Problem] = {
     ),
     "it gives no more pictures": Problem("A device or stream has stopped.", "Check cable and network."),
     "it was closed": Problem("The gateway is stopping.", "Nothing."),
-    "the camera sent no picture for … s: if this repeats, plug it in again": Problem(
+    "the camera sent no picture for … s: if this repeats, unplug the camera and plug it in again": Problem(
         "The device opened, but is silent.", "Unplug it and plug it in again."
     ),
-    "OpenCV says: …": Problem("OpenCV failed on the device or stream.", "See its message."),
+    "OpenCV says: …": Problem("OpenCV failed on the device or stream.", "Read the message."),
     "no RealSense camera is connected": Problem("librealsense finds no camera.", "Check USB 3 cable and udev rules."),
     "the RealSense camera with serial number … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
-    "librealsense says: …": Problem("librealsense failed.", "See its message."),
+    "librealsense says: …": Problem("librealsense failed.", "Read the message."),
     "the camera sends colour images in the format …; supported: bgr8, …": Problem(
-        "The RealSense gives another format.", "Set a supported one."
+        "The RealSense camera sends a colour format that actum cannot read.", "Set a supported format."
     ),
     "no camera that OpenNI 2 supports is connected": Problem(
         "OpenNI 2 finds no camera.", "Install the camera's driver; see [cameras](cameras.md#depth-cameras)."
@@ -147,38 +168,39 @@ OF_FRAMES: Mapping[str, Problem] = {
         "One of the two streams is missing.", "Use another camera."
     ),
     "the camera sends colour images in the format …; only RGB888 is supported": Problem(
-        "The OpenNI driver gives another format.", "Use another driver."
+        "The OpenNI driver sends a colour format that actum cannot read.", "Use another driver."
     ),
-    "OpenNI says: …": Problem("OpenNI failed.", "See its message."),
+    "OpenNI says: …": Problem("OpenNI failed.", "Read the message."),
     "black: nothing can be seen; is the lens covered?": Problem(
         "Images have been black for half a second.", "Uncover the lens, or add light."
     ),
     "frozen: the picture has not changed for … s": Problem("The picture repeats bit for bit.", "Restart the camera."),
-    "NiTE says: …": Problem("NiTE failed.", "See its message."),
+    "NiTE says: …": Problem("NiTE failed.", "Read the message."),
     "NiTE, which finds people in depth images, cannot use this camera (…): unset NITE2_REDIST64 and NITE2_REDIST and "
     "restart the gateway, which then finds people with the pose model": Problem(
-        "NiTE refuses the device.", "Unset the variables, which NiTE's installer sets."
+        "NiTE refuses the device.", "Unset both environment variables."
     ),
 }
 
 ABSENCES: Mapping[str, Problem] = {
     "no object in sight": Problem("No object was seen during the segment.", "Show a marker that is in the scene file."),
     "the hand is not known": Problem(
-        "The acting hand was never known together with an object.", "Let the camera see hand and objects at once."
+        "At no time were the places of both the acting hand and an object known.",
+        "Let the camera see hand and objects at once.",
     ),
     "no object within reach": Problem(
-        "The hand came to no object nearer than `ACTUM_REACH_M`, 0.25 m.",
+        "The hand came no nearer than `ACTUM_REACH_M`, 0.25 m, to any object.",
         "Check marker sizes and calibration with `actum watch objects posture`.",
     ),
     "no object within reach was acted on": Problem(
-        "Objects were near, but none moved with the hand or was worked at.",
-        "Nothing, for a pantomime; `held` may name a tool.",
+        "Objects were near, but none of them moved with the hand or was worked at.",
+        "Nothing, if the person mimed the action. The event's `held` may name a tool in the hand.",
     ),
     "no object along the arm": Problem(
         "Every object is further than `ACTUM_POINTING_LIMIT_DEG`, 30°, from the line of pointing.",
         "Nothing, if the person pointed elsewhere.",
     ),
-    "…; another moved …": Problem("One of these reasons, and the objects that somebody else moved.", "Nothing."),
+    "…; another moved …": Problem("A reason from this table, and the objects that another person moved.", "Nothing."),
 }
 
 REASONS: Mapping[str, Problem] = {**OF_SEGMENTS, **OF_FRAMES, **ABSENCES}

@@ -19,16 +19,17 @@ class Problem:
 
 OF_ALL: Mapping[str, Problem] = {
     "unknown_key": Problem(
-        "The key below `actum/` is none of the keys on this page, or a recording has such a channel.",
+        "A message or a recording's channel has a key below `actum/` that is not on this page.",
         "Correct the key.",
     ),
     "too_large": Problem(
-        "The payload is larger than its key admits: 64 MB for images, 250 kB otherwise. Payloads above twice that "
-        "are lost and appear in `drops`.",
+        "The payload is larger than its key admits: 64 MB for images, 250 kB otherwise. Payloads larger than twice "
+        "this limit are lost and counted in `drops`.",
         "Send less: JPEG instead of `bgr8`, or a smaller image.",
     ),
     "wrong_schema": Problem(
-        "The encoding names another schema than the key's.", "Publish each message on the key of its schema."
+        "The encoding of the message names a schema that is not the key's.",
+        "Publish each message on the key of its schema.",
     ),
     "higher_version": Problem("The encoding names a later version of the schema.", "Update actum on this machine."),
     "not_msgpack": Problem(
@@ -43,30 +44,31 @@ OF_ALL: Mapping[str, Problem] = {
         "Compare the message with its table on this page or with its JSON Schema.",
     ),
     "wrong_key": Problem(
-        "The message names another sensor, agent or service than its key, or is an image of the other kind.",
+        "The message names another sensor, agent or service than its key, or is a depth image on the colour key, or "
+        "the reverse.",
         "Use the key's `sensor`, `agent` and `service`, or leave `sensor` out.",
     ),
     "unwritable_state": Problem(
-        "An answer could not be written to the folder `ACTUM_STATE`, or the written answers are gone. After a "
-        "restart its segment may get a different answer.",
+        "An answer could not be written to the folder `ACTUM_STATE`, or the stored answers were deleted. After a "
+        "restart, the segment of this answer may get a different one.",
         "Free disk space and make the folder writable; the service retries with each answer.",
     ),
     "refused_command": Problem(
-        "A command was refused: its name is unknown, its fields are wrong, or it is impossible now.",
+        "The service refused a command: its name is unknown, its fields are wrong, or it is impossible at this time.",
         "Read the error in the reply, or the latest error.",
     ),
 }
 
 OF_NODES: Mapping[str, Problem] = {
     "stale_stamp": Problem(
-        "A message is not newer than the previous one on its stream; it is ignored.",
+        "A message is not newer than the previous one on its stream; the service ignores the message.",
         "Publish rising `stamp_ns`, and a new `session_id` when the clock restarts. Run one source per sensor.",
     ),
 }
 
 OF_THREE: Mapping[str, Problem] = {
     "too_many_people": Problem(
-        "More than 64 people appeared within about a minute; the one silent for longest is forgotten.",
+        "More than 64 people appeared within about a minute; the service forgets the person not seen for longest.",
         "Check whether the sensor renumbers people, and who else publishes on this key.",
     ),
 }
@@ -75,7 +77,7 @@ OF_THE_LAST_TWO: Mapping[str, Problem] = {
     "too_many_frames": Problem(
         "More frames arrived in the last minute than are kept: 60,000 postures of all people, 4,000 messages of "
         "objects. The oldest are dropped, so long segments lack their first frames.",
-        "Find the fast publisher. The limit allows 60 a second for each of 16 people.",
+        "Find the program that publishes too fast. The limit allows 60 postures a second for each of 16 people.",
     ),
     "late": Problem(
         "A sample or end mark arrived after its segment was answered, more than 2 s after the other streams.",
@@ -100,10 +102,11 @@ OF_GATEWAY: Mapping[str, Problem] = {
         "Check cable, lens and device name. The gateway retries after 0.5, 1, 2 … 8 s.",
     ),
     "damaged_recording": Problem(
-        "The recording cannot be read beyond a damaged part; it is played up to there.", "Copy it again."
+        "The recording cannot be read beyond a damaged part, and is played up to that part.",
+        "Copy the recording again.",
     ),
     "truncated_recording": Problem(
-        "The recording ends abruptly, as after a power cut; it is played up to there.", "Nothing."
+        "The recording ends abruptly, as after a power cut, and is played up to its end.", "Nothing."
     ),
 }
 
@@ -128,7 +131,8 @@ OF_PREPROCESSOR: Mapping[str, Problem] = {
         "A bone is longer than `ACTUM_BONE_LIMIT_M`, 1.5 m.", "Publish joints in metres, in the order of `joint_names`."
     ),
     "coincident_joints": Problem(
-        "Joints coincide or lie on one line, so they define no body frame.", "Nothing, unless it lasts."
+        "Joints coincide or lie on one line, so they define no body frame.",
+        "If it lasts, check the program that publishes skeletons.",
     ),
 }
 
@@ -141,8 +145,8 @@ OF_MODELS: Mapping[str, Problem] = {
 
 OF_CLASSIFIER: Mapping[str, Problem] = {
     "rejected_segment": Problem(
-        "A segment was answered without a recognition; its event has `valid: false`.",
-        "See the event's `reason`, below.",
+        "The classifier answered a segment without recognising an action; its event has `valid: false`.",
+        "See the event's `reason`.",
     ),
     "too_many_segments": Problem(
         "A segment started while 32 were open; it was rejected at once.",
@@ -168,12 +172,14 @@ OF_TRACKER: Mapping[str, Problem] = {
         "`K` does not fit the image's size.", "Calibrate at this size, or set `ACTUM_CALIBRATED_SIZE_PX`."
     ),
     "unknown_marker": Problem(
-        "A visible marker belongs to no object.", "Add it to the scene file, or remove it from view."
+        "A visible marker belongs to no object.", "Add the marker to the scene file, or remove it from view."
     ),
     "repeated_marker": Problem(
         "One marker number is visible twice; the one nearest to its last place counts.", "Print each number once."
     ),
-    "bad_pose": Problem("No pose in front of the camera fits the marker's corners.", "Nothing, unless it lasts."),
+    "bad_pose": Problem(
+        "No pose in front of the camera fits the marker's corners.", "If it lasts, keep the marker flat."
+    ),
     "outlying_pose": Problem(
         "An object seems to have jumped further than possible; a second sighting there confirms it.",
         "If it lasts, use more light, larger markers, or a calibrated camera.",
@@ -188,7 +194,7 @@ OF_FUSION: Mapping[str, Problem] = {
     "bad_object": Problem("An object is further away than 100 m; it is ignored.", "Publish positions in metres."),
     "too_many_objects": Problem(
         "More than 128 different objects appeared within a minute; new ones are ignored.",
-        "Keep the numbers of objects, or use a smaller marker dictionary.",
+        "Let each object keep its number, or use a smaller marker dictionary.",
     ),
     "too_many_actions": Problem(
         "More than 64 final actions waited for postures and objects; the oldest is answered with the data that "
@@ -201,7 +207,7 @@ OF_FUSION: Mapping[str, Problem] = {
     ),
     "incomplete_segment": Problem(
         "Postures or objects of a segment never arrived, so its object is unknown; its event has `valid: false`.",
-        "See the event's `reason`, below.",
+        "See the event's `reason`.",
     ),
     "duplicate_segment": Problem(
         "A final action arrived twice; the second is ignored.", "Look for a second classifier with `actum doctor`."
@@ -210,7 +216,8 @@ OF_FUSION: Mapping[str, Problem] = {
 
 OF_PAGE: Mapping[str, Problem] = {
     "refused_browser": Problem(
-        "A browser was refused: another site's page, an unknown name, a wrong token, or a wrong mark or command.",
+        "A browser was refused: its request came from another site or under an unknown host name, or had a wrong "
+        "token, mark or command.",
         "See the latest error, and [who gets in](page.md#who-gets-in).",
     ),
 }
@@ -228,7 +235,7 @@ OF_BRIDGE: Mapping[str, Problem] = {
         "Publish a `std_msgs/msg/String` with [this JSON](ros2.md#marks).",
     ),
     "stamp_beyond_ros": Problem(
-        "A stamp is after January 2038, the last that ROS 2 can represent; the message is not published there.",
+        "A stamp is after January 2038, the last that ROS 2 can represent; the message is not published to ROS 2.",
         "Stamp in nanoseconds since 1970, or since the sensor started.",
     ),
 }
@@ -237,7 +244,7 @@ OF_TRAINER: Mapping[str, Problem] = {
     "lost_take": Problem(
         "The take in progress is lost: it could not be written, its set was deleted, or the sensor's clock "
         "restarted or jumped.",
-        "Record it again; first free disk space for `ACTUM_TRAINER_DATA` if it is full.",
+        "If the disk with `ACTUM_TRAINER_DATA` is full, free disk space. Record the take again.",
     ),
     "refused_mark": Problem(
         "A mark bounds no example of the take: its stamp is outside the take's frames, or its end has no start or "

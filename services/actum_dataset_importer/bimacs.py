@@ -178,7 +178,7 @@ def _check_targets(labels: Sequence[Label], bodies: Mapping[int, str]) -> None:
         if label.target is not None and label.target not in bodies:
             raise ValueError(
                 f"the labels name the object {OBJECTS[label.target]}, but the file of positions has no columns for it: "
-                "download both again"
+                "download both files again"
             )
 
 

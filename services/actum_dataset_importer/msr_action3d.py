@@ -104,8 +104,8 @@ def _frames(path: Path) -> NDArray[np.float64]:
     rows = read_rows(path, columns=4)
     if len(rows) % SOURCE_JOINTS:
         raise DatasetError(
-            f"{path} has {len(rows)} rows; expected {SOURCE_JOINTS} rows for each frame, one per joint: download the "
-            "file again"
+            f"{path} has {len(rows)} rows; expected a multiple of {SOURCE_JOINTS}, one row for each joint in each "
+            "frame: download the file again"
         )
     return rows.reshape(-1, SOURCE_JOINTS, 4)
 

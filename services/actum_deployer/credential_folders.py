@@ -122,7 +122,8 @@ def authority_of(root: Path, may_be_made: bool) -> Signed:
         (folder / KEY).chmod(PRIVATE)
         found = Signed.load((folder / AUTHORITY).read_bytes(), (folder / KEY).read_bytes())
         if lasting(found, 1) <= 0:
-            raise ValueError(f"its certificate expired at {found.certificate.not_valid_after_utc:%Y-%m-%d %H:%M} UTC")
+            expired = found.certificate.not_valid_after_utc
+            raise ValueError(f"the certificate of the authority expired at {expired:%Y-%m-%d %H:%M} UTC")
     except (OSError, ValueError) as error:
         raise SettingsError(
             f"the certificate authority in {folder} cannot be used ({error}): restore {AUTHORITY} and {KEY} in this "

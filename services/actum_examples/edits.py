@@ -56,8 +56,9 @@ def move(take: Take, segment: MarkedSegment, start_ns: int, end_ns: int) -> None
         if moved.mirrored != other.mirrored and moved.shares_frames(other):
             mirrored, plain = (moved, other) if moved.mirrored else (other, moved)
             raise EditError(
-                f"segments {mirrored.segment_id} and {plain.segment_id} would overlap, but only "
-                f"{mirrored.segment_id} is mirrored (left and right exchanged): leave time between the two segments, "
+                f"segments {mirrored.segment_id} and {plain.segment_id} must not overlap, because "
+                f"{mirrored.segment_id} is mirrored (left and right exchanged) and {plain.segment_id} is not: leave "
+                "time between the two segments, "
                 f"or mirror {plain.segment_id} first"
             )
     _mend(take, [(segment, moved)])

@@ -25,7 +25,7 @@ RANK = 256
 """Directions that are kept: 94 to 98 % of the variance of pooled vectors lies in them."""
 MOST_RANK = 2 * RANK
 """Most directions that are kept after additions, each of which appends some, or of a training on many samples."""
-TRAIN_AGAIN = "train it again, with this version of actum, from recordings of all its actions"
+TRAIN_AGAIN = "train the model again, with this version of actum, from recordings of all its actions"
 COARSE = np.float16
 """The precision of what is kept: its rounding is small beside the noise of a sensor."""
 
@@ -54,7 +54,10 @@ class KeptWindows:
             KeptError: it keeps nothing of that, or it is damaged.
         """
         if f"{KEPT}window_coordinates" not in arrays:
-            raise KeptError(f"the model keeps nothing of its search's training, so nothing can be added: {TRAIN_AGAIN}")
+            raise KeptError(
+                "the model file contains no training data of the search, so no action can be added to the model: "
+                f"{TRAIN_AGAIN}"
+            )
         with _naming_damage():
             coordinates = arrays[f"{KEPT}window_coordinates"].astype(np.float32)
             completeness = arrays[f"{KEPT}window_completeness"].astype(np.float64)
@@ -132,14 +135,16 @@ def kept_data(arrays: Arrays, model: PyramidModel) -> TrainingData:
         KeptError: it keeps none, or they are damaged or another model's.
     """
     if not arrays:
-        raise KeptError(f"the model keeps nothing of its training, so no action can be added to it: {TRAIN_AGAIN}")
+        raise KeptError(
+            f"the model file contains no training data, so no action can be added to the model: {TRAIN_AGAIN}"
+        )
     with _naming_damage():
         data = _restored({name.removeprefix(KEPT): array for name, array in arrays.items()}, model)
         pooled, features = data.pooled_basis, data.convolved_basis
         assert pooled is not None and features is not None
         inputs = len(pooled.directions), len(features.directions)
         if data.labels != model.labels or inputs != (model.stages.axes.shape[1], len(model.opinion.axes)):
-            raise KeptError(f"what the model keeps of its training belongs to another model: {TRAIN_AGAIN}")
+            raise KeptError(f"the training data in the model file belongs to another model: {TRAIN_AGAIN}")
         _expect_whole(data, pooled, features)
     return data
 
@@ -156,7 +161,9 @@ def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
     for number, (vectors, samples, _) in enumerate(data.stages):
         _expect(f"stage_{number}", vectors, (len(samples), pooled.rank))
         if np.setdiff1d(samples, np.arange(count)).size:
-            raise ValueError(f"stage_{number}_samples names samples beyond the {count} that there are")
+            raise ValueError(
+                f"stage_{number}_samples refers to samples that do not exist; there are only {count} samples"
+            )
     _expect("background", data.background, (len(data.background), pooled.rank))
     _expect("convolved_spread", data.convolved.spread, (len(features.directions),))
     _expect("convolved_taught", data.convolved.taught, (last, features.rank))
@@ -165,7 +172,7 @@ def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
 
 def _expect(name: str, array: NDArray[Any], shape: tuple[int, ...]) -> None:
     if array.shape != shape:
-        raise ValueError(f"{name} has shape {array.shape}, not {shape}")
+        raise ValueError(f"the array {name} has shape {array.shape}; expected {shape}")
 
 
 @contextmanager
@@ -176,7 +183,7 @@ def _naming_damage() -> Iterator[None]:
     except KeptError:
         raise
     except (KeyError, ValueError, IndexError, TypeError) as error:
-        raise KeptError(f"what the model keeps of its training is damaged ({error}): {TRAIN_AGAIN}") from None
+        raise KeptError(f"the training data in the model file is damaged ({error}): {TRAIN_AGAIN}") from None
 
 
 def _restored(kept: Mapping[str, NDArray[Any]], model: PyramidModel) -> TrainingData:

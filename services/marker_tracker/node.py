@@ -55,7 +55,7 @@ class MarkerTracker:
             self._assignment.clear()
             self._tracks.clear()
         if not message.valid:
-            return [_answer(message, [], message.reason or "the source says so")]
+            return [_answer(message, [], message.reason or "the source gave no reason")]
         try:
             return [_answer(message, self._objects(message))]
         except UnusableImageError as error:

@@ -43,8 +43,8 @@ class CorrectionCommands:
         """Add an event of the last ten minutes to a set: as an example of an action, or as none of the actions."""
         if not 0 < request.end_ns - request.start_ns <= MAX_SEGMENT_NS:
             raise Refusal(
-                f"the event has to end after it starts and last at most {MAX_SEGMENT_NS // SECOND_NS} s: use the "
-                "start_ns and end_ns of an event or of a held_back message"
+                f"end_ns has to be later than start_ns, by at most {MAX_SEGMENT_NS // SECOND_NS} s: copy both from an "
+                "event or from a held_back message"
             )
         self._sets.folder(request.set)
         frames = list(self._recent.of(request.agent, request.start_ns, request.end_ns))
@@ -70,8 +70,8 @@ class CorrectionCommands:
             for each in take.examples if is_correction(take) else []:
                 if (each.agent, each.bounds_ns) == (request.agent, bounds_ns):
                     raise Refusal(
-                        f"this event is already in the set {request.set} as {each.label!r}: delete that example on the "
-                        "panel 'Teach' first"
+                        f"this event is already an example of {each.label!r} in the set {request.set}: delete this "
+                        "example on the panel 'Teach' first"
                     )
 
 

@@ -112,8 +112,8 @@ class ExampleCommands:
                 if take.name_of(example) == request.example:
                     return take, example
         raise Refusal(
-            f"the set {request.set} has no example {request.example!r}: the command 'examples' lists the examples of "
-            "a set"
+            f"the set {request.set} has no example {request.example!r}: use an id that the command 'examples' lists "
+            "for this set"
         )
 
     def _films_of(self, take: Take) -> dict[str, Film]:

@@ -77,7 +77,7 @@ class ModelStore:
         for each in self.listed()[0]:
             if each.id == model_id:
                 return each
-        raise Refusal(f"there is no model {model_id!r}: the command 'list' lists the models")
+        raise Refusal(f"there is no model {model_id!r}: use an id that the command 'list' lists")
 
     def add(self, file: Path, set_name: str, scores: dict[str, float]) -> StoredModel:
         """Keep a copy of a model file.

@@ -65,8 +65,8 @@ class UploadStore:
         """
         if not (self._folder / name).is_file():
             raise Refusal(
-                f"no file {name!r} was uploaded completely: send it with the command 'upload', and set last: true "
-                "in its last piece"
+                f"the file {name!r} was not uploaded completely: send the file with the command 'upload', and set "
+                "last to true in the last piece"
             )
 
     def move(self, name: str, folder: Path) -> Path:

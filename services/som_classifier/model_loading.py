@@ -67,7 +67,7 @@ def load_model(path: Path) -> Model:
     except FileNotFoundError:
         raise ModelError(path, "the file does not exist") from None
     except (*UNREADABLE, AttributeError) as error:
-        raise ModelError(path, f"the file is not a model of actum, or it is damaged ({_problem(error)})") from None
+        raise ModelError(path, f"the file is not a model of actum, or is damaged ({_problem(error)})") from None
 
 
 def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
@@ -96,7 +96,7 @@ def _problem(error: Exception) -> str:
 def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
     """Return the metadata as JSON, and the arrays by name."""
     if not zipfile.is_zipfile(stored):  # NumPy's own error would advise to read it as a pickle
-        raise ModelError(path, "the file is not a model of actum, or it is damaged")
+        raise ModelError(path, "the file is not a model of actum, or is damaged")
     _refuse_bomb(stored)
     with np.load(stored, allow_pickle=False) as file:
         names = [name for name in file.files if name != "metadata" and not name.startswith(KEPT)]
@@ -115,7 +115,7 @@ def kept_in(path: Path) -> Arrays:
             with np.load(stored, allow_pickle=False) as file:
                 return {name: file[name] for name in file.files if name.startswith(KEPT)}
     except UNREADABLE as error:
-        raise ModelError(path, f"the file is not a model of actum, or it is damaged ({_problem(error)})") from None
+        raise ModelError(path, f"the file is not a model of actum, or is damaged ({_problem(error)})") from None
 
 
 def _refuse_bomb(stored: IO[bytes]) -> None:

@@ -209,11 +209,11 @@ class Streams:
         """
         frames = self._since(start_ns - BEFORE_NS)
         if not frames:
-            return "the classifier was not there: no frame has come since" if resumed else None
+            return "the classifier started late: it has received no frame since its start" if resumed else None
         first, last = frames[0], frames[-1]
         follows_another = first.previous_ns is not None and first.previous_ns >= start_ns
         if follows_another and (late_s := longest_loss_s([(start_ns, first.stamp_ns)], start_ns, end_ns)):
-            return f"the classifier was not there: its first frame is {late_s:.1f} s after the start"
+            return f"the classifier started late: its first frame is {late_s:.1f} s after the segment's start"
         if lost_s := longest_loss_s([(last.stamp_ns, end_ns)], start_ns, end_ns):
             return f"frames lost: none came for the last {lost_s:.1f} s of the segment"
         broken = ((b.stamp_ns, min(then.stamp_ns, end_ns)) for b, then in pairwise(frames) if _is_broken(b, then))

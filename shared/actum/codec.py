@@ -78,8 +78,8 @@ def _fields_of(part: Any) -> dict[str, Any]:
     if isinstance(part, BaseModel):
         return vars(part)
     if isinstance(part, int):
-        raise OverflowError(f"{part} does not fit into 64 bits")
-    raise TypeError(f"a message holds a {type(part).__name__}, which cannot be packed")
+        raise OverflowError(f"the integer {part} in a message does not fit into 64 bits")
+    raise TypeError(f"a message contains a {type(part).__name__}, which cannot be encoded")
 
 
 def _packing() -> msgpack.Packer:
@@ -189,7 +189,7 @@ def unpack(payload: bytes) -> Any:
         nonlocal left
         left -= 1 + len(container)
         if left < 0:
-            raise ValueError(f"more than {MOST_VALUES} values in a message, nested ones included")
+            raise ValueError(f"a message contains more than {MOST_VALUES} values, including nested values")
         return container
 
     return msgpack.unpackb(

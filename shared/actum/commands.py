@@ -155,7 +155,7 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
 def _from_json(payload: bytes) -> Any:
     """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
     if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
-        raise ValueError(f"more than {MOST_VALUES} values in a message, nested ones included")
+        raise ValueError(f"a message contains more than {MOST_VALUES} values, including nested values")
     return json.loads(payload, object_pairs_hook=with_different_names)
 
 

@@ -17,7 +17,7 @@ def _compiled() -> ModuleType | None:
         return None
     if SOURCE.exists() and getattr(module, "source", "") != hashlib.sha256(SOURCE.read_bytes()).hexdigest():
         logging.getLogger("actum").warning(
-            "the compiled steps were made from another _compiled.c, so NumPy code runs instead, more slowly: run "
+            "the compiled code was built from another version of _compiled.c, so slower NumPy code runs instead: run "
             "'make install', or install actum again"
         )
         return None

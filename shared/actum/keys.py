@@ -210,7 +210,7 @@ def parse(text: str) -> Address:
         topic = _BY_PREFIX.get(prefix)
         if topic is not None and "{}" in topic.leaf and CHUNK.fullmatch(name):
             return Address(topic, sensor, name)
-    raise InvalidKeyError(f"{text!r} is not a key of actum: docs/messages.md lists the keys")
+    raise InvalidKeyError(f"{text!r} is not a key of actum: use one of the keys that docs/messages.md lists")
 
 
 def address_of(message: m.Message) -> Address:

@@ -42,7 +42,7 @@ def test_the_same_segment_of_another_session_gets_its_event(node: ActionFusion) 
 def test_after_a_restart_the_postures_of_before_are_missed() -> None:
     node = resumed()
     (event,) = events_of(node, *PUSH.postures(1.0), *PUSH.sightings(-1.0), action("push"))
-    assert event.reason == "the fusion was not there: its first posture is 1.0 s after the start"
+    assert event.reason == "the fusion started late: its first posture is 1.0 s after the segment's start"
     assert event.sentence == f"no event of push: {event.reason}"
     assert node.counters.rejects == {"incomplete_segment": 1}
 
@@ -60,7 +60,7 @@ def test_after_a_restart_without_any_posture_it_says_so() -> None:
     node = resumed()
     events_of(node, *PUSH.sightings(), action("push"))
     (event,) = ticked(node, 0.0, 13.0)
-    assert event.reason == "the fusion was not there: no posture has come since"
+    assert event.reason == "the fusion started late: it has received no posture since its start"
 
 
 def test_after_a_restart_without_the_objects_that_there_were_it_says_so(node: ActionFusion) -> None:
@@ -68,7 +68,7 @@ def test_after_a_restart_without_the_objects_that_there_were_it_says_so(node: Ac
     node = resumed(*before)
     events_of(node, *PUSH.postures(), action("push", segment_id="s2"))
     (event,) = ticked(node, 0.0, 13.0)
-    assert event.reason == "the fusion was not there: no objects have come since"
+    assert event.reason == "the fusion started late: it has received no objects since its start"
 
 
 def test_after_a_restart_where_there_never_were_objects_none_are_missed() -> None:

@@ -116,7 +116,7 @@ def test_broken_and_foreign_pictures_are_named(folder: Path, tmp_path: Path) -> 
 @pytest.mark.parametrize(
     ("options", "reason"),
     [
-        (["--board", "7by5"], "give columns x rows, such as 7x5"),
+        (["--board", "7by5"], "write COLUMNSxROWS, such as 7x5"),
         (["--family", "DICT"], "not a marker family"),
         (["--live"], "give either pictures of the board, or --live"),
     ],

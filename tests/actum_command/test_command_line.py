@@ -234,7 +234,9 @@ def test_what_an_addition_keeps_is_refused_as_a_flag_before_anything_is_read(
     (tmp_path / "broken.mcap").write_bytes(b"no recording")
     files = tmp_path / "broken.mcap", "-o", tmp_path / "after.npz", "--add-to", tmp_path / "no.npz"
     said = " ".join(refused("train", *files, *flags).split())
-    assert said.endswith(f"--add-to keeps the model's preset, settings, background and continuation: leave out {named}")
+    assert said.endswith(
+        f"--add-to does not change the model's preset, settings, background and continuation: leave out {named}"
+    )
 
 
 def test_the_model_to_add_to_is_loaded_before_recordings(tmp_path: Path) -> None:

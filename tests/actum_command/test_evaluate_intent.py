@@ -51,9 +51,11 @@ def test_options_of_models_are_refused_before_anything_is_read(flags: tuple[str,
 
 
 def test_recordings_without_objects_are_refused(tmp_path: Path) -> None:
-    assert "contain nobody together with an object" in refused("evaluate", "--intent", written(tmp_path, Objects))
+    assert "show no person and tracked object at the same time" in refused(
+        "evaluate", "--intent", written(tmp_path, Objects)
+    )
 
 
 def test_recordings_without_labelled_actions_are_refused(tmp_path: Path) -> None:
     said = refused("evaluate", "--intent", written(tmp_path, Segment))
-    assert "contain no contact (0 labelled actions without one)" in said
+    assert "contain no contact of a hand with an object (0 labelled actions, all without contact)" in said

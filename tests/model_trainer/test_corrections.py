@@ -73,7 +73,7 @@ def test_only_the_frames_of_the_event_and_of_who_acted_are_stored(teacher: Teach
 
 def test_what_is_too_long_or_ends_before_it_starts_is_refused(teacher: Teacher) -> None:
     for end_ns in (event()["start_ns"], event()["start_ns"] + 61 * SECOND_NS):
-        with pytest.raises(Refusal, match="has to end after it starts"):
+        with pytest.raises(Refusal, match="end_ns has to be later than start_ns"):
             teacher.ask("correct", **event(end_ns=end_ns))
 
 
@@ -96,7 +96,7 @@ def test_the_last_take_is_redone_though_events_were_corrected_after_it(teacher: 
 def test_an_event_is_corrected_once(teacher: Teacher) -> None:
     teacher.ask("correct", **event(label="wave"))
     for label in ("wave", ""):
-        with pytest.raises(Refusal, match="this event is already in the set kitchen as 'wave'"):
+        with pytest.raises(Refusal, match="this event is already an example of 'wave' in the set kitchen"):
             teacher.ask("correct", **event(label=label))
     teacher.ask("correct", **event(start_ns=5 * SECOND_NS, end_ns=7 * SECOND_NS))
     assert len(teacher.examples()) == 2

@@ -189,7 +189,7 @@ def test_one_job_runs_at_a_time_and_tells_how_far_it_is(teacher: Teacher) -> Non
         teacher.ask("evaluate", set="kitchen")
     assert teacher.ask("cancel", job=begun["id"])["state"] == "cancelled"
     assert teacher.jobs[-1].ended
-    with pytest.raises(Refusal, match="is not running, so it cannot be cancelled"):
+    with pytest.raises(Refusal, match="cannot be cancelled, because it is not running"):
         teacher.ask("cancel", job=begun["id"])
     assert not list((teacher.folder / "jobs").glob("*.work"))
 
@@ -277,7 +277,7 @@ def test_a_file_comes_in_pieces_that_follow_one_another(teacher: Teacher) -> Non
     assert send(0, b"abc")["size"] == 3
     with pytest.raises(Refusal, match="has the offset 5, but 3 bytes of the file have arrived: continue at offset 3"):
         send(5, b"x")
-    with pytest.raises(Refusal, match="no file 'clip.mp4' was uploaded completely"):
+    with pytest.raises(Refusal, match="the file 'clip.mp4' was not uploaded completely"):
         teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="wave")
     assert send(3, b"def", last=True) == {"upload": "clip.mp4", "size": 6}
     assert (teacher.folder / "uploads/.sent/clip.mp4").read_bytes() == b"abcdef"

@@ -56,7 +56,7 @@ def test_answers_of_before_say_nothing_of_another_session() -> None:
 def test_after_a_restart_a_segment_whose_first_frames_are_gone_is_rejected() -> None:
     frames = postures(90)
     run = Run().remember().feed(mark("start", 0), mark("end", 60 * FRAME_NS), *frames[30:]).wait(2.3)
-    assert run.reasons == ["the classifier was not there: its first frame is 1.0 s after the start"]
+    assert run.reasons == ["the classifier started late: its first frame is 1.0 s after the segment's start"]
 
 
 def test_after_a_restart_a_segment_is_answered_where_only_little_of_it_is_gone() -> None:
@@ -67,7 +67,7 @@ def test_after_a_restart_a_segment_is_answered_where_only_little_of_it_is_gone()
 def test_after_a_restart_a_segment_without_any_frame_says_so_once_none_may_come() -> None:
     run = Run().remember().feed(mark("start", 0), mark("end", 60 * FRAME_NS)).wait(9.0)
     assert run.closed == []
-    assert run.wait(4.0).reasons == ["the classifier was not there: no frame has come since"]
+    assert run.wait(4.0).reasons == ["the classifier started late: it has received no frame since its start"]
 
 
 def test_just_after_a_restart_a_mark_without_a_stamp_cannot_be_placed() -> None:

@@ -138,7 +138,7 @@ def test_actions_put_while_the_fusion_was_away_get_their_events(running: System,
         found = collect(events, Event, lambda found: len(found) == 2)
     answered = {event.segment_id: event for event in found}
     assert answered["kept"].valid and answered["kept"].object is not None
-    assert "the fusion was not there: its first posture is" in (answered["lost"].reason or "")
+    assert "the fusion started late: its first posture is" in (answered["lost"].reason or "")
 
 
 def test_an_event_written_down_and_not_put_reaches_those_who_wait_for_it(
@@ -191,7 +191,7 @@ def test_marks_put_while_the_classifier_was_away_are_answered(
     assert len(final) == 2
     of_it = [frame for frame in frames if 16 * SECOND_NS <= frame.stamp_ns <= 18 * SECOND_NS]
     assert answers["kept"].valid and answers["kept"].frames == len(of_it) and answers["kept"].missed == 0
-    assert "the classifier was not there: its first frame is" in (answers["lost"].reason or "")
+    assert "the classifier started late: its first frame is" in (answers["lost"].reason or "")
     assert [each for each in again if each.segment_id == "before"] == [first], "word for word"
 
 

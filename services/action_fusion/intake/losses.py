@@ -45,11 +45,11 @@ class Before:
             end_ns: its end.
         """
         if self._resumed and not postures_ns:
-            return "the fusion was not there: no posture has come since"
+            return "the fusion started late: it has received no posture since its start"
         if self._saw_objects and not len(objects_ns):
-            return "the fusion was not there: no objects have come since"
+            return "the fusion started late: it has received no objects since its start"
         if self._resumed and (late_s := longest_loss_s([(start_ns, postures_ns[0])], start_ns, end_ns)):
-            return f"the fusion was not there: its first posture is {late_s:.1f} s after the start"
+            return f"the fusion started late: its first posture is {late_s:.1f} s after the segment's start"
         if postures_ns and (lost_s := longest_loss_s([(postures_ns[-1], end_ns)], start_ns, end_ns)):
             return f"postures lost: none came for {lost_s:.1f} s of the segment"
         return _why_objects_lost(objects_ns, start_ns, end_ns) if len(objects_ns) else None

@@ -153,7 +153,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
 def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Board:
     columns, _, rows = squares.partition("x")
     if not (columns.isdecimal() and rows.isdecimal()):
-        fail(f"--board {squares!r} does not name the numbers of squares: give columns x rows, such as 7x5")
+        fail(f"--board {squares!r} does not give the numbers of squares: write COLUMNSxROWS, such as 7x5")
     with failing_on(PatternError):
         return Board(int(columns), int(rows), square_mm / 1000, marker_mm / 1000, family)
 

@@ -50,8 +50,8 @@ CLASSIFIER = "som_classifier"
 """The service that has the settings of the search."""
 ONLY_LEFT_OUT = "used only with --leave-one-person-out: "
 INTENT_HELP = (
-    "test without a model file how early and how rightly the contacts of hands with objects are foreseen. A contact is "
-    "the first motion of an object in a labelled action; the recordings must contain the objects"
+    "test without a model file how early and how correctly the contacts of hands with objects are foreseen. A contact "
+    "is the first motion of an object in a labelled action; the recordings must contain the objects"
 )
 OF_MODELS = {
     "continuous": "--continuous",
@@ -202,10 +202,13 @@ def _evaluate_intents(recordings: Sequence[Recording], json_file: Path | None) -
         scores = intent_scores(recorded, progress) if recorded.contacts else None
     tell_unread(recordings)
     if not recorded.takes:
-        fail("the given recordings contain nobody together with an object: record while objects are tracked")
+        fail(
+            "the given recordings show no person and tracked object at the same time: record while objects are tracked"
+        )
     if scores is None:
         fail(
-            f"the given recordings contain no contact ({recorded.without_contact} labelled actions without one): "
+            f"the given recordings contain no contact of a hand with an object ({recorded.without_contact} labelled "
+            "actions, all without contact): "
             "record labelled actions in which a hand moves an object"
         )
     console.print(intent_report(scores, time.monotonic() - began_s))

@@ -80,7 +80,7 @@ def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tup
                 "calibration_size_mismatch",
                 f"the principal point ({matrix[0, 2]:g}, {matrix[1, 2]:g}) of the camera matrix K is far from the "
                 f"centre of an image of {width}x{height} pixels, so K is for another image size: calibrate the camera "
-                "at this size, or set --calibrated-size-px to the image size at which it was calibrated",
+                "at this size, or set --calibrated-size-px to the image size at which the camera was calibrated",
             )
         return matrix
     across, down = width / calibrated_px[0], height / calibrated_px[1]

@@ -30,5 +30,6 @@ class Silence:
         """
         if self._now_s() - self._heard_s > self._allowed_s:
             raise CameraLostError(
-                f"the camera sent no picture for {self._allowed_s:g} s: if this repeats, plug it in again"
+                f"the camera sent no picture for {self._allowed_s:g} s: if this repeats, unplug the camera and plug "
+                "it in again"
             )

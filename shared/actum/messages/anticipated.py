@@ -25,14 +25,14 @@ class Intended(Model):
     object_name: Name
     """What the object is called."""
     hand: Hand
-    """The hand that is on its way; of both hands the likelier one."""
+    """The hand that is on its way to the object; if both are, the likelier one."""
     probability: FiniteFloat
-    """The probability that this object is what the person touches next, within 1.5 s, 0 to 1."""
+    """The probability that the person touches this object next, within 1.5 s, 0 to 1."""
     action: Name | None = None
-    """The likeliest ongoing action; null where none is known, or where it is marked as one of the other hand."""
+    """The likeliest ongoing action; null if none is known, or if the action is marked for the other hand."""
     action_probability: FiniteFloat | None = None
     """The probability that the person touches this object next and does `action` to it: `probability` times the
-    action's confidence; null where `action` is."""
+    action's confidence; null if `action` is null."""
     contact_s: FiniteFloat
     """The expected time from `stamp_ns` to the contact (s)."""
     contact_std_s: Deviation
@@ -46,13 +46,14 @@ class Intent(Message):
 
     SCHEMA = "actum.intent"
     agent: AgentId
-    """Who is about to touch something."""
+    """The number of the person who is about to touch something."""
     intended: Annotated[list[Intended], Field(max_length=MOST_OBJECTS)]
     """The possible contacts, the likeliest first. The probabilities sum to 1 at most; the rest is the probability that
-    none of these contacts happens. Empty once, when the reach is over; nothing follows until the next reach."""
+    none of these contacts happens. When the reach is over, one message has an empty list, and none follows until the
+    next reach."""
     completeness: FiniteFloat | None = None
-    """How much of the ongoing action has been done, 0 to 1; null where no action is known to go on."""
+    """The fraction of the ongoing action that has been done, 0 to 1; null if no ongoing action is known."""
     segment_id: SegmentId | None = None
-    """The name of the ongoing segment, marked or found; null where there is none."""
+    """The name of the ongoing segment, marked or found; null if there is none."""
     session_id: Name = ""
-    """The run of the source, as the posture's."""
+    """The run of the source, as in the posture."""

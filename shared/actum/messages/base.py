@@ -57,15 +57,16 @@ class Message(BaseModel):
     VERSION: ClassVar[int] = 1
 
     stamp_ns: Stamp
-    """Capture time on the sensor's clock, in nanoseconds; carried unchanged from the frame to what follows from it."""
+    """Capture time on the sensor's clock, in nanoseconds. Messages computed from a frame carry the frame's stamp
+    unchanged."""
     seq: Seq | None = None
-    """The message's number on its key, from 0 with the process that puts it; null before the runtime fills it in."""
+    """The message's number on its key, from 0 when the publishing process starts; null until the runtime sets it."""
     sensor: str
-    """The viewpoint: the chunk after `actum/` in the key."""
+    """The sensor's name: the part of the key after `actum/`."""
     valid: bool = True
     """Whether the content can be used; if not, `reason` says why."""
     reason: Reason | None = None
-    """Why the message is not valid; null where it is."""
+    """Why the message is not valid; null if it is valid."""
 
     @classmethod
     def of_checked(cls, **fields: Any) -> Self:

@@ -34,20 +34,20 @@ class Segment(Message):
     stamp_ns: Stamp | None = None  # type: ignore[assignment]
     """When the action starts or ends, on the sensor's clock (ns); null means now."""
     kind: Literal["start", "end"]
-    """Which of the two it marks."""
+    """Whether this mark is the start or the end of the action."""
     segment_id: SegmentId
-    """The segment's name, the same in its start and its end, new for each action."""
+    """The segment's name: the same in its start and end mark, new for each action."""
     agent: Annotated[int, Field(ge=1, lt=2**31)] | None = None
-    """Who acts; null where the classifier is to find out."""
+    """The number of the person who acts; null if the classifier is to find out."""
     hand: Hand | None = None
-    """Which hand acts; null where it is not known."""
+    """The hand that acts; null if unknown."""
     label: Annotated[Name | None, AfterValidator(lambda text: text or None)] = None
-    """What is done, in recordings to learn from; it is never used to recognise. The label `none` says that the segment
-    is like an action but is none of them. An empty label is null."""
+    """The action that is done, for training; recognition never uses the label. The label `none` says that the segment
+    is like an action but is not one. An empty label is read as null."""
     origin: Name | None = None
-    """Who put it: manual, a person at a switch; simulator, the scene; replay, a recording; auto, the
-    classifier itself, which answers it, and no other does; cut, `actum record --times` or `actum label cut`; null, a
-    program of yours."""
+    """Who published the mark: manual, a person at a switch; simulator, the simulated scene; replay, a recording that is
+    played; auto, the classifier, for a segment that it found and that it alone answers; cut, `actum record --times` or
+    `actum label cut`; null, another program."""
 
 
 def segment_marks(

@@ -38,44 +38,46 @@ class Action(Message):
 
     SCHEMA = "actum.action"
     agent: AgentId
-    """Who acts; 0 where nobody is sure who it is."""
+    """The number of the person who acts; 0 if unidentified."""
     segment_id: SegmentId
-    """The segment's name, as it was marked; of what goes on that nobody marked, the name that it will get."""
+    """The segment's name, as in its marks; for an ongoing action without marks, the name that its segment will get."""
     start_ns: Stamp
     """The stamp of the segment's start (ns)."""
     end_ns: Stamp | None
-    """The stamp of its end (ns); null while it is open."""
+    """The stamp of the segment's end (ns); null while the segment is open."""
     final: bool
-    """Whether the segment has ended, so that this is its only answer; partial ones come per frame before."""
+    """Whether the segment has ended. A segment has one final message; partial messages come before, one per frame."""
     action: Name | None
-    """The likeliest action; null where there is none."""
+    """The likeliest action; null if there is none."""
     confidence: FiniteFloat
-    """The probability that `action` is right, calibrated on people held out, 0 to 1."""
+    """The probability that `action` is right, calibrated on people left out of the training, 0 to 1."""
     activations: Activations
-    """The activity of each trained action's neuron, by the action's name; empty in partial ones that nobody marked."""
+    """The activity of each trained action's neuron, by the action's name; empty in partial messages without marks."""
     part: Name | None
-    """The body part that moved most: right_arm, left_arm, right_leg, left_leg or body; null where none is known."""
+    """The body part that moved most: right_arm, left_arm, right_leg, left_leg or body; null if unknown."""
     frames: Count
-    """How many valid postures it rests on."""
+    """Number of valid postures that the answer is based on."""
     missed: Count
-    """How many frames of the segment were lost on the way."""
+    """Number of frames of the segment that were lost."""
     hand: Hand | None = None
-    """The hand that was marked; null where none was."""
+    """The hand that the mark names; null if it names none."""
     unknown: bool = False
-    """Whether it may be none of the trained actions: it is less like its action than most true instances are."""
+    """Whether the segment may be none of the trained actions: it is less like `action` than most true instances are."""
     familiarity: FiniteFloat | None = None
-    """Probability that the segment is a true instance of `action`, not another movement; null in partial actions and
-    where the model cannot tell."""
+    """Probability that the segment is a true instance of `action`, not another movement; null in partial messages, and
+    if the model cannot compute it."""
     missing_joints: list[Name] = Field([])
-    """The names of the joints that some frame lacked for longer than 0.3 s."""
+    """The names of the joints that were missing in some frame for longer than 0.3 s."""
     completeness: FiniteFloat | None = None
-    """How much of the action has been done, 0 to 1; null in final ones and where the model cannot tell."""
+    """The fraction of the action that has been done, 0 to 1; null in final messages, and if the model cannot compute
+    it."""
     maps: dict[str, Tensor] | None = None
-    """The mean activity of each map over the segment, rows by columns, by the map's name; null unless asked for."""
+    """The mean activity of each map over the segment, rows by columns, by the map's name; null without
+    `--publish-maps`."""
     trace: Tensor | None = None
-    """The way over the first map, a row and a column per step; null unless asked for."""
+    """The path over the first map, a row and a column per step; null without `--publish-maps`."""
     session_id: Name = ""
-    """The run of the source, as the posture's; empty where no posture had come."""
+    """The run of the source, as in the posture; empty if no posture had arrived."""
 
 
 WhyHeldBack = Literal["unknown", "disabled", "pause", "cooldown", "unanswerable"]
@@ -87,38 +89,39 @@ class HeldBack(Message):
 
     SCHEMA = "actum.held_back"
     agent: AgentId
-    """Who acts."""
+    """The number of the person who acts."""
     start_ns: Stamp
-    """The stamp of its start (ns)."""
+    """The stamp of the segment's start (ns)."""
     end_ns: Stamp
-    """The stamp of its end (ns)."""
+    """The stamp of the segment's end (ns)."""
     action: Name
-    """The action that it is most like."""
+    """The action that the segment is most like."""
     confidence: FiniteFloat
     """The probability that `action` is right if it is one of the trained actions, 0 to 1."""
     familiarity: FiniteFloat | None
-    """Probability that the segment is a true instance of `action`, not another movement; null where the model cannot
-    tell."""
+    """Probability that the segment is a true instance of `action`, not another movement; null if the model cannot
+    compute it."""
     why: WhyHeldBack
-    """Why it is not published: it is not enough like `action` (unknown); the settings disable the action (disabled);
-    it follows another action too soon (pause), or one of the same name (cooldown), for the settings; or it has too few
-    usable frames (unanswerable)."""
+    """Why the segment is not published: it is not enough like `action` (unknown); the settings disable `action`
+    (disabled); by the settings, it follows too soon after another action (pause) or after the same action (cooldown);
+    or it has too few usable frames (unanswerable)."""
     sentence: str
     """The reason in one line, for people."""
     session_id: Name = ""
-    """The run of the source, as the action's."""
+    """The run of the source, as in the action."""
 
 
 class ObjectPose(Model):
     """Where an object is at the end of an action, in one frame."""
 
     frame: Name
-    """The frame: `camera`, that of the skeletons, or the fixed frame's name, as `action_fusion` was told."""
+    """The name of the frame: `camera` for the camera frame of the skeletons, otherwise the name set by
+    `ACTUM_WORLD_FRAME`."""
     position_m: FinitePoint
-    """Where its middle is (m)."""
+    """The position of the object's centre (m)."""
     quaternion_xyzw: Quaternion | None
-    """The rotation from its own axes to the frame's, as a unit quaternion; null where a hand has moved it since it was
-    seen last, so that only its place is known."""
+    """The rotation from the object's own axes to those of the frame, as a unit quaternion; null if a hand has moved the
+    object since it was last seen, so that only its position is known."""
 
 
 class ActedObject(Model):
@@ -127,26 +130,26 @@ class ActedObject(Model):
     id: int
     """The object's number."""
     name: Name
-    """What it is called."""
+    """The object's name."""
     distance_m: FiniteFloat
-    """The smallest distance from the hand's joint to it during the segment (m)."""
+    """The smallest distance between the hand's joint and the object during the segment (m)."""
     carried: bool = False
-    """How its motion is known: true where, for a while, a hand covered it and its place was taken from that hand.
-    A thing that is seen all the way is false here though it was lifted: see `taken_along`."""
+    """Whether, for a while, a hand covered the object and the object's place was taken from that hand. False for an
+    object that was always visible, even if it was lifted: see `taken_along`."""
     taken_along: bool = False
-    """Whether the hand that acted moved it during the segment, it going as the hand went: lifted, put, pushed …, seen
-    or covered."""
+    """Whether the hand that acted moved the object during the segment, so that both moved together: lifted, put, pushed
+    …, visible or covered."""
     in_hand_at_end: bool = False
-    """Whether, as the segment ends, it is still in the hand that had it: where it was in it, within a decimetre. That
-    the fingers are closed is not seen, so that a hand that rests on what it has put down counts too."""
+    """Whether, at the segment's end, the object is still at its place in the hand that had it, within a decimetre.
+    Fingers are not seen, so a hand that rests on an object that it has put down counts too."""
     last_seen_ns: Stamp | None = None
-    """When it was seen last, up to the segment's end (ns); null where it was not."""
+    """When the object was last seen, up to the segment's end (ns); null if it was not seen."""
     pose: ObjectPose | None = None
-    """Where it is at the segment's end, in the camera frame of the skeletons: where it was seen last, or where the hand
-    that has covered it since has it or has left it; null where the sender does not tell. An object that came back is at
-    its first place again, though `motion` is measured at the turn."""
+    """The object's pose at the segment's end, in the camera frame of the skeletons: where it was last seen, or where
+    the hand that has covered it since then has it or has left it; null if the sender does not report it. If the object
+    came back, the pose is at its first place, although `motion` is measured at the turn."""
     fixed_pose: ObjectPose | None = None
-    """The same in the fixed frame that `action_fusion` was told of; null where it was told of none."""
+    """The same pose in the fixed frame that `ACTUM_WORLD_FROM_CAMERA` defines; null if that is not set."""
 
 
 class HeldObject(Model):
@@ -155,30 +158,30 @@ class HeldObject(Model):
     id: int
     """The object's number."""
     name: Name
-    """What it is called."""
+    """The object's name."""
 
 
 class Pointing(Model):
     """How well the arm points at the object."""
 
     angle_deg: FiniteFloat
-    """How far off the line of the arm the object is (degrees)."""
+    """The angle between the line of pointing and the object (degrees)."""
     margin_deg: FiniteFloat | None
-    """How much further off the next object is (degrees); null where there is no other."""
+    """How much larger the angle of the next object is (degrees); null if there is no other object."""
 
 
 class Motion(Model):
     """How the object moved in the segment, in the level frame of its first posture: right, up, forward."""
 
     displacement_m: FinitePoint
-    """From its place at the segment's start to that at its end or, where it came back, at `turn_ns` (m): right, up,
-    forward of the person."""
+    """From the object's place at the segment's start to its place at the end or, if it came back, at `turn_ns` (m):
+    right, up, forward of the person."""
     direction: Name | None = None
-    """The word for the axis on which it moved most: right, left, up, down, away, towards, or sideways where the
-    person's forward is not known; null where it did not move."""
+    """The direction in which the object moved most: right, left, up, down, away, towards, or sideways if the person's
+    forward direction is unknown; null if the object did not move."""
     turn_ns: Stamp | None = None
-    """When the object was furthest from its place at the segment's start, if it came back from there in the segment,
-    as a cup that is lifted and set down again (ns); null where it did not come back."""
+    """When the object was furthest from its place at the segment's start (ns), if it came back during the segment, like
+    a cup that is lifted and set down again; null if it did not come back."""
 
 
 class Event(Message):
@@ -186,54 +189,54 @@ class Event(Message):
 
     SCHEMA = "actum.event"
     agent: AgentId
-    """Who acted; 0 where nobody is sure who it is."""
+    """The number of the person who acted; 0 if unidentified."""
     segment_id: SegmentId
-    """The segment's name, as it was marked."""
+    """The segment's name, as in its marks."""
     start_ns: Stamp
     """The stamp of the segment's start (ns)."""
     end_ns: Stamp
     """The stamp of its end (ns)."""
     action: Name | None
-    """What was done; null where it was not recognised."""
+    """The action that was done; null if none was recognised."""
     confidence: FiniteFloat
     """The probability that `action` is right, 0 to 1."""
     activations: Activations
     """The activity of each trained action's neuron, by the action's name."""
     object: ActedObject | None
-    """What it was done to; null where it was nothing, see `why`."""
+    """The object that the action was done to; null if there was none, for the reason in `why`."""
     held: HeldObject | None
-    """What was in the hand: the object itself or a tool; null where nothing was."""
+    """The object in the hand: `object` itself or a tool; null if the hand held nothing."""
     hand: Hand | None
-    """Which hand acted; null where it is not known."""
+    """The hand that acted; null if unknown."""
     objects_present: list[int]
     """The numbers of the objects seen during the segment."""
     distances_m: dict[str, FiniteFloat]
-    """The smallest distance (m) of a hand that may have acted to each object, by its number."""
+    """The smallest distance (m) between each object, by its number, and a hand that may have acted."""
     motion: Motion | None
-    """How the object moved; null where there is none."""
+    """How the object moved; null if there is no object or its motion is unknown."""
     result: str | None
-    """The motion in words, such as `0.18 m up` or `unmoved`; null where there is no object."""
+    """The motion in words, such as `0.18 m up` or `unmoved`; null if `motion` is null."""
     sentence: str
-    """All of it in one line, for people."""
+    """The whole event in one line, for people."""
     frames: Count
-    """How many valid postures the action rests on."""
+    """Number of valid postures that the action is based on."""
     missed: Annotated[int, Field(ge=0, lt=2**63)]
-    """How many frames were lost on the way, to the classifier and to the fusion."""
+    """Number of frames that were lost on the way to the classifier and to the fusion."""
     unknown: bool = False
-    """Whether it may be none of the trained actions."""
+    """Whether the segment may be none of the trained actions."""
     missing_joints: list[Name] = Field([])
-    """The names of the joints that some frame lacked for longer than 0.3 s."""
+    """The names of the joints that were missing in some frame for longer than 0.3 s."""
     candidates: list[ActedObject] = Field([])
-    """Two or more objects that are as likely, the likeliest first; empty where one is."""
+    """Two or more objects that are about equally likely, the likeliest first; empty if one is clearly likeliest."""
     pointing: Pointing | None = None
-    """How well the arm points at the object; null where nothing is pointed at."""
+    """How well the arm points at the object; null if nothing is pointed at."""
     outcome: Name | None = None
-    """What became of the object by `motion`: lifted, put down, pushed, pulled, moved or unmoved; null where there is
-    none."""
+    """What happened to the object, from `motion`: lifted, put down, pushed, pulled, moved or unmoved; null if `motion`
+    is null."""
     agrees: bool | None = None
-    """Whether `outcome` is what the action is to do; null where it is not to do something of the kind, or where what
-    was to be pushed or pulled went sideways."""
+    """Whether `outcome` is the one expected of the action; null if the action has no expected outcome, or if an object
+    to be pushed or pulled moved sideways."""
     why: Reason | None = None
-    """Why there is no object, and which ones another moved; null where there is one."""
+    """Why there is no object, and which objects another person moved; null if there is an object."""
     session_id: Name = ""
-    """The run of the source, as the action's."""
+    """The run of the source, as in the action."""

@@ -29,26 +29,27 @@ class Status(Message):
     service: str
     """The service's name."""
     instance: str
-    """This process among others of the service."""
+    """The name of this process of the service."""
     uptime_s: float
-    """Seconds since it started."""
+    """Seconds since the process started."""
     rates: dict[str, float]
-    """Messages handled a second (Hz) since the last status, by key."""
+    """Messages handled per second (Hz) since the last status, by key."""
     handled: dict[str, int]
     """Messages handled since the start, by key."""
     drops: dict[str, int]
-    """Messages lost on the way since the start, told by gaps in `seq`, by key."""
+    """Messages lost on the way since the start, found by gaps in `seq`, by key."""
     rejects: dict[str, int]
     """Messages and segments that could not be used since the start, by kind of problem."""
     last_error: str | None
-    """The latest problem in words; null where there was none."""
+    """The latest problem in words; null if there was none."""
     latency_ms: dict[str, float]
-    """Milliseconds from a message's arrival to the last put of its answer, over the recent past: `p50` and `p99`."""
+    """Milliseconds from the arrival of a message until the last of its answers is published, recently: `p50` and
+    `p99`."""
     state: str
     """What the service is doing, in words, such as `running`."""
     counts: dict[str, int] = Field({})
-    """What else happened since the start and is no fault, by kind: the classifier counts here the actions that it
-    found without marks, and what became of them."""
+    """What else happened since the start and is no fault, by kind, such as how many segments the classifier found
+    without marks, and how many of these it dropped and why."""
     hops: list[HopTime] = Field([])
     """Where the time goes between messages, as the page's service receives them; empty for other services."""
 
@@ -60,27 +61,27 @@ class Info(Message):
     service: str
     """The service's name."""
     instance: str
-    """This process among others of the service."""
+    """The name of this process of the service."""
     version: str
-    """The version of actum it runs."""
+    """The version of actum that the service runs."""
     schemas: list[str]
-    """The schemas it speaks, such as `actum.event/1`."""
+    """The schemas that the service reads and writes, such as `actum.event/1`."""
     joint_names: list[str]
     """The names of the fifteen joints, in the order of every list of joints."""
     model: str | None = None
-    """Which model the classifier has loaded; null where there is none."""
+    """The model that the classifier has loaded; null if there is none."""
     calibration: str | None = None
-    """Which calibration the images carry; null where there is none."""
+    """The calibration that the images carry; null if there is none."""
     host: str | None = None
-    """The machine it runs on."""
+    """The machine on which the service runs."""
     source: str | None = None
-    """What a gateway reads: a simulated scene, a file, a camera; null for other services."""
+    """What a gateway reads: a simulated scene, a file or a camera; null for other services."""
     rate_hz: float | None = None
-    """How many frames a second a gateway's source is set to give (Hz); null where it does not say."""
+    """Frames per second that a gateway's source is set to deliver (Hz); null if unknown."""
     page: str | None = None
-    """The address of the page that it serves to browsers; null for other services."""
+    """The address of the page that the service serves to browsers; null for other services."""
     commands: list[str] = Field([])
-    """The names of the commands that it can be asked for, such as `parameters`."""
+    """The names of the commands that the service accepts, such as `parameters`."""
 
 
 class Truth(Message):
@@ -88,18 +89,18 @@ class Truth(Message):
 
     SCHEMA = "actum.truth"
     kind: Literal["start", "end"]
-    """Whether it stands in the action's first or its last frame."""
+    """The action's first frame (start) or last frame (end)."""
     segment_id: SegmentId
     """The segment's name."""
     agent: Annotated[int, Field(ge=1, lt=2**31)]
-    """Who acts."""
+    """The number of the person who acts."""
     hand: Hand
     """The hand that acts."""
     action: Name
-    """What is really done."""
+    """The action that is really done."""
     object_id: int
-    """The number of the object it is done to; -1 for a pantomime."""
+    """The number of the object that the action is done to; -1 for a pantomime."""
     object_name: Name
-    """Its name; empty for a pantomime."""
+    """The object's name; empty for a pantomime."""
     displacement_m: FinitePoint | None
-    """How far the object moved, camera frame (m), at the end; null at the start and for a pantomime."""
+    """How far the object moved until the end, camera frame (m); null at the start and for a pantomime."""

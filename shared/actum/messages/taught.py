@@ -11,42 +11,42 @@ class TakeState(Model):
     """The take that is being recorded, or the newest one."""
 
     set: Name
-    """The set that it belongs to."""
+    """The set to which the take belongs."""
     label: Name
     """The action that is done; empty for background."""
     person: Name
-    """Who acts; empty where nobody said."""
+    """The name of the person who acts; empty if not given."""
     kind: Literal["action", "background"]
-    """Whether one action is repeated, or people do none of the actions."""
+    """`action` if one action is repeated, `background` if people do none of the actions."""
     asked: Count
-    """How many repetitions there are to be; 0 for background."""
+    """Number of repetitions to record; 0 for background."""
     counted: Count
-    """How many there are so far."""
+    """Number of repetitions counted so far."""
     phase: Literal["waiting", "moving", "resting", "done"]
-    """What the person does now: waiting before the first movement, moving, resting, or done, as the take has ended."""
+    """What the person does now: waiting before the first movement, moving, or resting; done if the take has ended."""
     seconds: Annotated[FiniteFloat, Field(ge=0)]
-    """How long it has lasted, by the stamps of the skeletons (s)."""
+    """How long the take has lasted, by the stamps of the skeletons (s)."""
     people: Count = 0
-    """How many people are seen in the newest frame."""
+    """Number of people in the newest frame."""
     doubts: list[Reason] = Field([])
-    """What may be wrong with the take that has ended, in sentences."""
+    """What may be wrong with the take, in sentences, once it has ended."""
 
 
 class JobState(Model):
     """The job that is running, or the newest one."""
 
     id: Name
-    """The job's name, by which its result can be asked for."""
+    """The job's id, with which its result can be requested."""
     kind: Literal["train", "evaluate", "import"]
-    """What it does."""
+    """What the job does."""
     stage: Reason
-    """What it does just now, in words."""
+    """What the job is doing now, in words."""
     done: Annotated[FiniteFloat, Field(ge=0, le=1)]
-    """How much of that stage is done."""
+    """The fraction of this stage that is done."""
     state: Literal["running", "done", "failed", "cancelled"]
-    """What became of it."""
+    """Whether the job is running or how it ended."""
     message: Reason
-    """The result in a sentence, or why there is none; empty while it runs."""
+    """The result in a sentence, or why there is none; empty while the job runs."""
 
 
 class Training(Message):
@@ -54,17 +54,17 @@ class Training(Message):
 
     SCHEMA = "actum.training"
     recording: TakeState | None
-    """The take that is being recorded, or the newest one; null before the first."""
+    """The take that is being recorded, or the newest one; null before the first take."""
     job: JobState | None
-    """The job that is running, or the newest one; null before the first."""
+    """The job that is running, or the newest one; null before the first job."""
     model: Name | None
-    """Which model the classifier is to use; null where there is none."""
+    """The model that the classifier is to use; null if there is none."""
     can_undo: bool
-    """Whether there is a model that was in use before it."""
+    """Whether there is a previous model to return to."""
     revision: Count
-    """A number that rises with each change of the sets and models: list them anew."""
+    """A number that rises with each change of the sets and models; after a change, list them again."""
     model_set: Name | None = None
-    """The set that the model was trained on; null where that is not known."""
+    """The set on which the model was trained; null if unknown."""
     model_file: Reason | None = None
-    """The file that the model was copied from: the one that somebody named for use, or the one that ships with actum;
-    null where the model was put into use by the trainer."""
+    """The file from which the model was copied: the file that somebody named for use, or the one that ships with actum;
+    null if the trainer put the model into use."""

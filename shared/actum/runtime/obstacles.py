@@ -134,7 +134,7 @@ def _with_user(settings: ServiceSettings, user: str | None) -> str:
     who = f"rejects the login of user {name}" if name else "requires a user name and a password"
     return (
         f"TLS works, but no session opens: either the router {who} (copy the credentials folder of this program "
-        "again), or it is frozen (restart it)"
+        "again), or the router is frozen (restart the router)"
     )
 
 

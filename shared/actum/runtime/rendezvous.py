@@ -104,7 +104,8 @@ class SharedPlace(Place):
         elif self._unanswered_since_s is not None and now_s - self._unanswered_since_s > LOST_S:
             self._unanswered_since_s = math.inf
             log.warning(
-                "sensor %s cannot be shared, because the router does not tell which other processes share it: allow "
+                "sensor %s cannot be shared, because the router does not report which other processes share this "
+                "sensor: allow "
                 "liveliness_query in the router's access control",
                 self._settings.sensor,
             )

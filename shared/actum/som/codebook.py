@@ -181,7 +181,9 @@ class Codebook:
             ValueError: there is no row, no second unit, or no such number of neighbours.
         """
         if neighbours not in _FARTHEST2:
-            raise ValueError(f"neighbours is {neighbours}; allowed are {' and '.join(map(str, _FARTHEST2))}")
+            raise ValueError(
+                f"the argument 'neighbours' is {neighbours}; allowed are {' and '.join(map(str, _FARTHEST2))}"
+            )
         first, second = self.coordinates[self.best_two(some_rows(vectors)).T]
         return float((np.square(first - second).sum(axis=1) > _FARTHEST2[neighbours]).mean())
 

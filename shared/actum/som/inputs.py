@@ -40,7 +40,8 @@ def check_squarable(values: Array) -> None:
     largest = np.nanmax(np.abs(values))
     if largest > np.sqrt(np.finfo(values.dtype).max / values.shape[1]) / 4:
         raise ValueError(
-            f"values up to {largest:.0e} are too large for distances in {values.dtype}: scale the values down"
+            f"the largest value, {largest:.0e}, is too large to compute distances in {values.dtype}: scale the values "
+            "down"
         )
 
 

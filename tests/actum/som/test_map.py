@@ -165,9 +165,9 @@ def test_values_whose_squares_overflow_are_refused(dtype: type, allowed: float, 
     vectors = rng(1).random((30, 4))
     som, large = Som(4, 5, weights.astype(dtype)), Som(4, 5, (weights * allowed).astype(dtype))
     assert (large.bmus(vectors * allowed) == som.bmus(vectors)).all()
-    with pytest.raises(ValueError, match=f"too large for distances in {dtype.__name__}"):
+    with pytest.raises(ValueError, match=f"too large to compute distances in {dtype.__name__}"):
         Som(4, 5, (weights * too_large).astype(dtype))
-    with pytest.raises(ValueError, match=f"cannot train.* too large for distances in {dtype.__name__}"):
+    with pytest.raises(ValueError, match=f"cannot train.* too large to compute distances in {dtype.__name__}"):
         som.train_batch(vectors * too_large, 1, (1.0, 1.0))
 
 

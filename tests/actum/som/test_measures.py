@@ -25,7 +25,7 @@ def test_diagonal_neighbours_are_neighbours_among_eight_not_among_four() -> None
 
 
 def test_neighbours_that_a_grid_does_not_have_are_refused() -> None:
-    with pytest.raises(ValueError, match="neighbours is 6; allowed are 8 and 4"):
+    with pytest.raises(ValueError, match="'neighbours' is 6; allowed are 8 and 4"):
         Som(2, 2, np.zeros((4, 1))).topographic_error([[0.4]], 6)
 
 
