@@ -65,8 +65,8 @@ class UploadStore:
         """
         if not (self._folder / name).is_file():
             raise Refusal(
-                f"the file {name!r} was not uploaded completely: send the file with the command 'upload', and set "
-                "last to true in the last piece"
+                f"the file {name!r} was not uploaded completely: send all its pieces with the command 'upload', "
+                "and set the field `last` to true in the final piece"
             )
 
     def move(self, name: str, folder: Path) -> Path:

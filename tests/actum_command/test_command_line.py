@@ -235,7 +235,7 @@ def test_what_an_addition_keeps_is_refused_as_a_flag_before_anything_is_read(
     files = tmp_path / "broken.mcap", "-o", tmp_path / "after.npz", "--add-to", tmp_path / "no.npz"
     said = " ".join(refused("train", *files, *flags).split())
     assert said.endswith(
-        f"--add-to does not change the model's preset, settings, background and continuation: leave out {named}"
+        f"with --add-to, the model keeps its preset, settings, background and continuation: leave out {named}"
     )
 
 

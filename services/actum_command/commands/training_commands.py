@@ -107,7 +107,7 @@ def _known(path: Path, context: typer.Context) -> tuple[Model, Arrays]:
     given = flags_given(context, flags)
     if given:
         kept = "preset, settings, background and continuation"
-        fail(f"--add-to does not change the model's {kept}: leave out {' and '.join(given)}")
+        fail(f"with --add-to, the model keeps its {kept}: leave out {' and '.join(given)}")
     with failing_on(ModelError):
         return load_model(path), kept_in(path)
 
