@@ -146,7 +146,7 @@ def _from_scene(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
                 path,
                 root,
                 location,
-                f"marker {key[1]} of {key[0]} is already on object {owner.object_id}: give object "
+                f"object {owner.object_id} has marker {key[1]} of the family {key[0]} already: give object "
                 f"{mounted.object_id} another marker",
             )
         markers[key] = mounted

@@ -48,7 +48,7 @@ class RegressedContinuation(Continuation):
         has = tuple(each.shape for each in (self.usual, self.directions, self.offsets, self.shares))
         should = (INPUTS,), (rank, ANSWERS), (ANSWERS,), (2, len(STEPS))
         if has != should:
-            raise ValueError(f"the arrays of the continuation have shapes {has}; expected {should}")
+            raise ValueError(f"the model's arrays for predicting postures have the shapes {has}, not {should}")
 
     @classmethod
     def restored(cls, arrays: Mapping[str, NDArray[Any]]) -> "RegressedContinuation | None":

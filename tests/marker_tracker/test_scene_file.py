@@ -53,7 +53,7 @@ BAD = {
     "family: 4X4_50\nobjects: [cup]\n": "line 2: objects: has to map ids to objects",
     GOOD + "  2: {name: box, markers: [{id: 2, object_from_marker: {translation_m: [0, 0, 35]}}]}\n": "equal to 5",
     GOOD
-    + "  2: {name: box, markers: [{id: 1}]}\n": "marker 1 of DICT_4X4_50 is already on object 1: give object 2 anoth",
+    + "  2: {name: box, markers: [{id: 1}]}\n": "object 1 has marker 1 of the family DICT_4X4_50 already: give object",
     GOOD
     + "  60: {name: box}\n": "line 5: objects.60: the dictionary DICT_4X4_50 has no marker 60: use ids from 0 to 49",
     GOOD + "  2: {name: box, family: 4X4_100}\n": "DICT_4X4_100 and DICT_4X4_50 contain the same markers: use",
