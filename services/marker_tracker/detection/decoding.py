@@ -116,8 +116,8 @@ def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
             result = _matched(prepare(levels[unread]), threshold, family, tolerated)
             ids[unread], turns[unread], wrong[unread], matched[unread] = result
     (index,) = np.nonzero(matched)
-    upright = [np.roll(corners_px[at], turns[at], axis=0) for at in index]
-    return _Readings(index, np.array(upright).reshape(-1, 4, 2), ids[index].tolist(), wrong[index].tolist())
+    upright = corners_px[index[:, None], (np.arange(4) - turns[index, None]) % 4]
+    return _Readings(index, upright, ids[index].tolist(), wrong[index].tolist())
 
 
 def _sharpened(levels: Array) -> Array:
@@ -142,8 +142,7 @@ def _matched(
     matches, white_border = family.match(inner), cells.sum(axis=(1, 2)) - inner.sum(axis=(1, 2))
     border_cells = 4 * (family.cells + 1)
     matched = (matches.wrong <= tolerated) & (white_border <= MAX_WHITE_BORDER_SHARE * border_cells)
-    for at in np.nonzero(matched)[0]:
-        cells[at] = np.rot90(family.patterns[matches.ids[at]], matches.turns[at])
+    cells[matched] = family.turned_patterns[matches.ids[matched], matches.turns[matched]]
     matched &= _correlation(levels, cells) >= MIN_CORRELATION
     return matches.ids, matches.turns, matches.wrong + white_border, matched
 
