@@ -108,7 +108,8 @@ def _align(
 
     Without directions, each coordinate moves freely.
     """
-    white = np.pad(patterns, ((0, 0), (1, 1), (1, 1)), constant_values=True).astype(np.float64)
+    white = np.ones((len(patterns), patterns.shape[1] + 2, patterns.shape[2] + 2))
+    white[:, 1:-1, 1:-1] = patterns
     initial = _initial_photometric(pixels, corners_px, white) if photometric is None else photometric
     aligned_px, photometric = corners_px.copy(), initial.copy()
     blurs = BLUR_RANGE_PX / (_mean_sides_px(corners_px) / patterns.shape[1])[:, None]

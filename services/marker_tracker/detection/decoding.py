@@ -1,7 +1,7 @@
 """Decode squares: read the code in the cells of each, and align the markers that are small."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -182,18 +182,15 @@ def _read_in_place(pixels: Pixels, markers: Sequence[Marker], family: Family) ->
     wrong = (_binarised(levels) != patterns).sum(axis=(1, 2))
     shows_code = (wrong <= family.corrected) & (_correlation(levels, patterns) >= MIN_CORRELATION)
     (index,) = np.nonzero(shows_code & aligned.converged & (aligned.covered <= MAX_COVERED_CLEAR))
-    return [_moved(before[at][0], before[at][1], aligned, at, int(wrong[at])) for at in index.tolist()]
+    centres_px = aligned.corners_px.mean(axis=1)
+    return [_moved(*before[at], aligned, at, centres_px[at], int(wrong[at])) for at in index.tolist()]
 
 
-def _moved(marker: Marker, start: AlignmentStart, aligned: Alignment, at: int, wrong: int) -> Marker:
-    corners_px = aligned.corners_px[at]
-    motion_px = corners_px.mean(axis=0) - marker.centre_px
-    return replace(
-        marker,
-        corners_px=corners_px,
-        wrong=wrong,
-        covered=float(aligned.covered[at]),
-        start=AlignmentStart(start.corners_px + motion_px, aligned.photometric[at], motion_px),
+def _moved(marker: Marker, start: AlignmentStart, aligned: Alignment, at: int, centre_px: Array, wrong: int) -> Marker:
+    motion_px = centre_px - marker.centre_px
+    moved = AlignmentStart(start.corners_px + motion_px, aligned.photometric[at], motion_px)
+    return Marker(
+        marker.family, marker.id, aligned.corners_px[at], wrong, float(aligned.covered[at]), marker.initial_px, moved
     )
 
 
