@@ -127,7 +127,7 @@ bench-continuous: $(STAMP)  ## finding actions that nobody marked, beside peers 
 	$(BIN)/pip install --quiet --disable-pip-version-check -e ".[benchmarks]"
 	$(BIN)/python -m benchmarks.continuous
 
-bench-growth: $(STAMP)  ## what training costs with 1,000 to 30,000 segments of 100 actions, about half an hour
+bench-growth: $(STAMP)  ## what training costs with 1,000 to a million segments of 100 actions, about a quarter of an hour
 	$(BIN)/python -m benchmarks.growth
 
 bench-intent: $(STAMP)  ## how early contacts of hands with objects are foreseen, beside what is simpler; about ten minutes

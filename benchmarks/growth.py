@@ -39,8 +39,8 @@ Array = NDArray[np.float64]
 Action = tuple[str, str, bool, bool]
 """What is done first and second, whether backwards, and whether mirrored."""
 
-SIZES = (10, 30, 100, 300)
-"""Segments of each action."""
+SIZES = (10, 100, 1_000, 10_000)
+"""Segments of each action: up to a million in all."""
 ACTIONS = 100
 IN_RECORDING = 20
 """Segments of each recording."""
@@ -140,11 +140,12 @@ def _one_of(label: str, rng: np.random.Generator) -> SegmentSample:
 
 def measure(count: int, each: int, jobs: int | None) -> dict[str, float]:
     """Train one size in this process."""
-    sampling, choosing_s = Sampling(), 0.0
+    sampling, choosing_s, choosing_cpu_s = Sampling(), 0.0, 0.0
     for samples in recordings(actions(count), each):
-        began_s = time.perf_counter()
+        began_s, began_cpu_s = time.perf_counter(), time.process_time()
         sampling.add(samples)
         choosing_s += time.perf_counter() - began_s
+        choosing_cpu_s += time.process_time() - began_cpu_s
     kept = sampling.samples
     began_s, began_cpu_s = time.perf_counter(), time.process_time()
     with at_most(jobs):
@@ -155,6 +156,7 @@ def measure(count: int, each: int, jobs: int | None) -> dict[str, float]:
         "stream_frames": sum(len(stream.stamps_ns) for stream in kept.streams),
         "reading_s": simulated()[1] * count * each,
         "choosing_s": choosing_s,
+        "choosing_cpu_s": choosing_cpu_s,
         "training_s": time.perf_counter() - began_s,
         "training_cpu_s": time.process_time() - began_cpu_s,
         "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000,
@@ -173,20 +175,35 @@ def main() -> None:
     if asked.here:
         print(json.dumps(measure(asked.actions, asked.sizes[0], asked.jobs)))
         return
-    print(
-        "| segments | kept | frames of streams | reading, s | choosing, s | training, s (CPU) | peak, MB | held out |"
+    heads = (
+        "segments",
+        "kept",
+        "frames of streams",
+        "reading, s",
+        "choosing, s (CPU)",
+        "training, s (CPU)",
+        "peak, MB",
     )
-    print("|---|---|---|---|---|---|---|---|", flush=True)
+    print(f"| {' | '.join(heads)} | held out |\n|{'---|' * (len(heads) + 1)}", flush=True)
     for each in asked.sizes:
         flags = ["--actions", str(asked.actions), "--here", *(["--jobs", str(asked.jobs)] if asked.jobs else [])]
         command = [sys.executable, "-m", "benchmarks.growth", str(each), *flags]
-        found = json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
-        print(
-            f"| {found['segments']} | {found['kept']} | {found['stream_frames']} | {found['reading_s']:.0f} | "
-            f"{found['choosing_s']:.1f} | {found['training_s']:.0f} ({found['training_cpu_s']:.0f}) | "
-            f"{found['peak_mb']:.0f} | {found['held_out']:.3f} |",
-            flush=True,
-        )
+        print(row(json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)), flush=True)
+
+
+def row(found: dict[str, float]) -> str:
+    """Lay out what `measure` has found as a row of the table."""
+    cells = (
+        f"{found['segments']}",
+        f"{found['kept']}",
+        f"{found['stream_frames']}",
+        f"{found['reading_s']:.0f}",
+        f"{found['choosing_s']:.1f} ({found['choosing_cpu_s']:.1f})",
+        f"{found['training_s']:.0f} ({found['training_cpu_s']:.0f})",
+        f"{found['peak_mb']:.0f}",
+        f"{found['held_out']:.3f}",
+    )
+    return f"| {' | '.join(cells)} |"
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 """Filters of signals that are sampled at irregular times."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -89,11 +90,8 @@ class MotionEstimate:
 
         The acceleration's standard deviation is a single number for all axes, or one for each axis: (3,).
         """
-        transition = _IDENTITY_6.copy()
-        transition[:3, 3:] = interval_s * _IDENTITY_3
-        disturbance = acceleration_std_mps2 * np.concatenate(
-            [interval_s**2 / 2 * _IDENTITY_3, interval_s * _IDENTITY_3]
-        )
+        transition, from_acceleration = _motion(interval_s)
+        disturbance = acceleration_std_mps2 * from_acceleration
         covariance = transition @ self.covariance @ transition.T + disturbance @ disturbance.T
         return MotionEstimate(transition @ self.state, covariance)
 
@@ -110,6 +108,17 @@ class MotionEstimate:
         covariance = self.covariance - gain @ self.covariance[:3, :]
         state = self.state + gain @ innovation_m
         return MotionEstimate(state, (covariance + covariance.T) / 2), float(innovation_m @ precision @ innovation_m)
+
+
+@lru_cache(maxsize=8)
+def _motion(interval_s: float) -> tuple[Array, Array]:
+    """Return the transition matrix F (6, 6) over an interval, and the effect (6, 3) of an acceleration of 1 m/s².
+
+    All objects of an image share the interval.
+    """
+    transition = _IDENTITY_6.copy()
+    transition[:3, 3:] = interval_s * _IDENTITY_3
+    return transition, np.concatenate([interval_s**2 / 2 * _IDENTITY_3, interval_s * _IDENTITY_3])
 
 
 def _gain(cutoff_hz: Array | float, interval_s: float) -> Array:

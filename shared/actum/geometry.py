@@ -59,24 +59,26 @@ def apply(b_from_a: Array, points_a: Array) -> Array:
 
 
 def quaternion_xyzw(rotation: Array) -> list[float]:
-    """Return a rotation matrix (3, 3) as a unit quaternion [x, y, z, w] with w >= 0 (Bar-Itzhack 2000)."""
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation
-    symmetric = np.array(
-        [
-            [xx - yy - zz, yx + xy, zx + xz, zy - yz],
-            [yx + xy, yy - xx - zz, zy + yz, xz - zx],
-            [zx + xz, zy + yz, zz - xx - yy, yx - xy],
-            [zy - yz, xz - zx, yx - xy, xx + yy + zz],
-        ]
+    """Return a rotation matrix (3, 3) as a unit quaternion [x, y, z, w] with w >= 0.
+
+    Each row below is the quaternion times four times one of its components; the largest of these is exact (Shepperd
+    1978).
+    """
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rotation.tolist()
+    rows = (
+        (1 + xx - yy - zz, yx + xy, zx + xz, zy - yz),
+        (yx + xy, 1 + yy - xx - zz, zy + yz, xz - zx),
+        (zx + xz, zy + yz, 1 + zz - xx - yy, yx - xy),
+        (zy - yz, xz - zx, yx - xy, 1 + xx + yy + zz),
     )
-    quaternion = np.linalg.eigh(symmetric).eigenvectors[:, -1]
-    listed: list[float] = (np.copysign(1.0, quaternion[3]) * quaternion).tolist()
-    return listed
+    x, y, z, w = rows[max(range(4), key=lambda i: rows[i][i])]
+    length = math.copysign(math.sqrt(x * x + y * y + z * z + w * w), w)
+    return [x / length, y / length, z / length, w / length]
 
 
 def angle_between_rad(one: Array, other: Array) -> float:
     """Return the angle (rad) between two rotations (3, 3), or between those of two transforms (4, 4)."""
-    cosine = (float((one[:3, :3] * other[:3, :3]).sum()) - 1) / 2
+    cosine = (float(np.vdot(one[:3, :3], other[:3, :3])) - 1) / 2
     return math.acos(min(1.0, max(-1.0, cosine)))
 
 
@@ -94,7 +96,7 @@ def flat(transform: Array) -> list[float]:
     return numbers
 
 
-def from_flat(numbers: list[float]) -> Array:
+def from_flat(numbers: Sequence[float]) -> Array:
     """Return the transform (4, 4) of 16 numbers, row-major."""
     return np.array(numbers, dtype=np.float64).reshape(4, 4)
 

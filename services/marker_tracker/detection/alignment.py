@@ -44,6 +44,8 @@ TANH_SLOPE = math.sqrt(2 / math.pi)
 """With `TANH_CUBIC`: the normal distribution function is (1 + tanh(slope x (1 + cubic x²))) / 2 to 3e-4."""
 TANH_CUBIC = 0.044715
 """See `TANH_SLOPE`."""
+_UNIT_SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32)
+"""Corners (4, 2) of the unit square, in the order of a marker's."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +78,7 @@ def align(pixels: Pixels, corners_px: Array, patterns: Cells, photometric: Array
         patterns: (n, across, across), the cells of each marker with its border.
         photometric: (n, 3), initial photometric parameters; by default estimated from the image.
     """
-    directions = np.broadcast_to(np.eye(8), (len(corners_px), 8, 8))
-    return _align(pixels, corners_px, patterns, directions, photometric)
+    return _align(pixels, corners_px, patterns, None, photometric)
 
 
 def align_by_similarity(pixels: Pixels, corners_px: Array, patterns: Cells) -> Alignment:
@@ -92,20 +93,23 @@ def align_by_similarity(pixels: Pixels, corners_px: Array, patterns: Cells) -> A
 
 def sample_squares(pixels: Pixels, corners_px: Array, unit_points: Array) -> Array:
     """Sample grey levels (n, m) of squares (n, 4, 2) at points (m, 2) of the unit square, mapped projectively."""
-    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], dtype=np.float32)
-    image_from_unit = np.array([cv2.getPerspectiveTransform(square, quad.astype(np.float32)) for quad in corners_px])
-    by_column = np.swapaxes(image_from_unit.reshape(-1, 3, 3), 1, 2)
-    mapped = unit_points @ by_column[:, :2] + by_column[:, 2:]
-    points = (mapped[..., :2] / mapped[..., 2:]).astype(np.float32)
-    sampled = cv2.remap(pixels, points[..., 0], points[..., 1], cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    quads = corners_px.astype(np.float32)
+    image_from_unit = np.array([cv2.getPerspectiveTransform(_UNIT_SQUARE, quad) for quad in quads]).reshape(-1, 3, 3)
+    mapped = image_from_unit[:, :, :2] @ unit_points.T + image_from_unit[:, :, 2:]
+    x, y = ((mapped[:, axis] / mapped[:, 2]).astype(np.float32) for axis in (0, 1))
+    sampled = cv2.remap(pixels, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
     return np.asarray(sampled, dtype=np.float64)
 
 
 def _align(
-    pixels: Pixels, corners_px: Array, patterns: Cells, directions: Array, photometric: Array | None = None
+    pixels: Pixels, corners_px: Array, patterns: Cells, directions: Array | None, photometric: Array | None = None
 ) -> Alignment:
-    """Align along k directions (n, 8, k): each column is a motion of the corners' coordinates x0, y0, ... y3."""
-    white = np.pad(patterns, ((0, 0), (1, 1), (1, 1)), constant_values=True).astype(np.float64)
+    """Align along k directions (n, 8, k): each column is a motion of the corners' coordinates x0, y0, ... y3.
+
+    Without directions, each coordinate moves freely.
+    """
+    white = np.ones((len(patterns), patterns.shape[1] + 2, patterns.shape[2] + 2))
+    white[:, 1:-1, 1:-1] = patterns
     initial = _initial_photometric(pixels, corners_px, white) if photometric is None else photometric
     aligned_px, photometric = corners_px.copy(), initial.copy()
     blurs = BLUR_RANGE_PX / (_mean_sides_px(corners_px) / patterns.shape[1])[:, None]
@@ -114,7 +118,8 @@ def _align(
         (active,) = np.nonzero(last_step_px > SUFFICIENT_STEP_PX)
         if not len(active):
             break
-        step, change, weight = _step(pixels, aligned_px[active], white[active], photometric[active], directions[active])
+        along = None if directions is None else directions[active]
+        step, change, weight = _step(pixels, aligned_px[active], white[active], photometric[active], along)
         aligned_px[active] += np.clip(step, -MAX_CORNER_MOTION_PX, MAX_CORNER_MOTION_PX)
         blur, black, contrast = (photometric[active] + change).T
         blur = np.clip(blur, blurs[active, 0], blurs[active, 1])
@@ -150,7 +155,7 @@ def _medians(levels: Array, chosen: Mask) -> Array:
 
 
 def _step(
-    pixels: Pixels, corners_px: Array, white: Array, photometric: Array, directions: Array
+    pixels: Pixels, corners_px: Array, white: Array, photometric: Array, directions: Array | None
 ) -> tuple[Array, Array, Array]:
     """Take one Gauss-Newton step.
 
@@ -164,21 +169,33 @@ def _step(
     blurred, slopes, by_blur = _blurred(white, blur[:, 0], across)
     residual = levels - black - contrast * blurred
     weight = 1 / (1 + (residual / (CAUCHY_SCALE * contrast)) ** 2)
-    jacobian = np.empty((len(levels), directions.shape[2] + 3, levels.shape[1]))
+    jacobian = np.empty((len(levels), 8 + 3, levels.shape[1]))
+    by_corner = jacobian[:, :-3].reshape(len(levels), 4, 2, -1)
+    np.multiply(_corner_weights(across)[:, None], _gradient(corners_px, contrast, slopes)[:, None], out=by_corner)
+    jacobian[:, -3], jacobian[:, -2], jacobian[:, -1] = -contrast * by_blur, -1.0, -blurred
+    if directions is not None:
+        jacobian = np.concatenate([np.swapaxes(directions, 1, 2) @ jacobian[:, :-3], jacobian[:, -3:]], axis=1)
+    step = _solved(jacobian, weight, residual)
+    corners = step[:, :-3] if directions is None else directions @ step[:, :-3]
+    return corners.reshape(-1, 4, 2), step[:, -3:, 0], weight
+
+
+def _gradient(corners_px: Array, contrast: Array, slopes: Array) -> Array:
+    """Return how grey levels change with a motion of the marker (n, 2, m), in grey levels per px."""
     first, second, third, fourth = np.moveaxis(corners_px, 1, 0)
     right, down = (second - first + third - fourth) / 2, (fourth - first + third - second) / 2
     image_from_unit = np.stack([right, down], axis=1)
     per_px: Array = np.linalg.inv(image_from_unit) @ slopes
-    gradient = contrast[..., None] * per_px
-    by_corner = (_corner_weights(across)[:, None] * gradient[:, None]).reshape(len(levels), 8, -1)
-    np.matmul(np.swapaxes(directions, 1, 2), by_corner, out=jacobian[:, :-3])
-    jacobian[:, -3], jacobian[:, -2], jacobian[:, -1] = -contrast * by_blur, -1.0, -blurred
+    return contrast[..., None] * per_px
+
+
+def _solved(jacobian: Array, weight: Array, residual: Array) -> Array:
+    """Solve the damped normal equations for a step (n, k, 1); jacobian (n, k, m), weights and residuals (n, m)."""
     weighted = jacobian * weight[:, None]
     normal = weighted @ np.swapaxes(jacobian, 1, 2)
-    damping = RELATIVE_DAMPING * np.einsum("nii->ni", normal) + ABSOLUTE_DAMPING
-    normal += np.eye(normal.shape[1]) * damping[:, None, :]
-    step = -np.linalg.solve(normal, weighted @ residual[..., None])
-    return (directions @ step[:, :-3]).reshape(-1, 4, 2), step[:, -3:, 0], weight
+    diagonal = np.einsum("nii->ni", normal)
+    diagonal += RELATIVE_DAMPING * diagonal + ABSOLUTE_DAMPING
+    return np.asarray(-np.linalg.solve(normal, weighted @ residual[..., None]), dtype=np.float64)
 
 
 @cache

@@ -56,8 +56,8 @@ GRADIENT_STOP = (cv2.TERM_CRITERIA_COUNT + cv2.TERM_CRITERIA_EPS, 30, 0.01)
 """Iterations and pixels at which `cornerSubPix` stops: a tenth of the accuracy wanted."""
 SINGULAR = 1e-6
 """Sine of the angle below which two sides are parallel, and pixels below which one has no length."""
-RIDGE = 1e-6
-"""Added to the normal matrix, which stays invertible where no profile has an edge."""
+_RIDGE_3 = 1e-6 * np.eye(3)
+"""Added to the normal matrix (3, 3), which stays invertible where no profile has an edge."""
 
 
 def refine(pixels: Pixels, corners_px: Array) -> Array:
@@ -110,14 +110,16 @@ def _by_edges(pixels: Pixels, corners: Array, fits: int) -> Array:
     centres = middle[:, :, None] + (s * length[..., None] / 2)[..., None] * along[:, :, None]
     half_length = np.clip(length / SMALLEST_CELLS / 2, MIN_REACH_PX, MAX_REACH_PX)
     t = half_length[..., None] * ACROSS_SIDE
-    points = (centres[..., None, :] + t[:, :, None, :, None] * outward[:, :, None, None]).astype(np.float32)
-    x, y = np.moveaxis(points.reshape(-1, PROFILE_SAMPLES, 2), -1, 0)
-    sampled = cv2.remap(pixels, x, y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    levels = sampled.astype(np.float64).reshape(points.shape[:-1])
+    x, y = (
+        (centres[..., axis, None] + (t * outward[..., axis, None])[:, :, None]).astype(np.float32) for axis in (0, 1)
+    )
+    flat = (-1, PROFILE_SAMPLES)
+    sampled = cv2.remap(pixels, x.reshape(flat), y.reshape(flat), cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
+    levels = sampled.astype(np.float64).reshape(x.shape)
     rise = np.maximum(levels[..., 1:] - levels[..., :-1], 0.0) ** 2
-    total = rise.sum(axis=-1)
     between = (t[..., 1:] + t[..., :-1]) / 2
-    offset = np.einsum("nskt,nst->nsk", rise, between) / np.maximum(total, 1e-9)
+    moment, total = np.moveaxis(rise @ np.stack([between, np.ones_like(between)], axis=-1), -1, 0)
+    offset = moment / np.maximum(total, 1e-9)
     contrast = levels[..., -1] - levels[..., 0]
     weight = np.where(contrast > 0, np.minimum(contrast, MAX_CONTRAST_WEIGHT), 0.0)
     fitted = _fitted(s, offset, weight, length, fits)
@@ -126,19 +128,25 @@ def _by_edges(pixels: Pixels, corners: Array, fits: int) -> Array:
 
 def _fitted(s: Array, offset: Array, weight: Array, length: Array, fits: int) -> Array:
     """Fit c (n, 4, 3) by weighted least squares, the bow c2 held near 0; later fits weigh outliers down (Cauchy)."""
-    powers = np.stack([np.ones_like(s), s, s * s], axis=-1)
+    powers_and_offset = np.stack([np.ones_like(s), s, s * s, offset], axis=-1)
+    powers = powers_and_offset[..., :3]
     prior = np.zeros((*length.shape, 3, 3))
     prior[..., 2, 2] = (EDGE_NOISE_PX / (BOW_PER_PX * length**2)) ** 2
-    prior += RIDGE * np.eye(3)
+    prior += _RIDGE_3
     relative = weight / np.maximum(weight.mean(axis=-1, keepdims=True), 1e-9)
-    robust = relative
-    for _ in range(fits):
-        weighted = powers * robust[..., None]
-        normal = np.swapaxes(weighted, -1, -2) @ powers + prior
-        fitted = np.linalg.solve(normal, (np.swapaxes(weighted, -1, -2) @ offset[..., None]))[..., 0]
+    fitted = _least_squares(powers_and_offset, relative, prior)
+    for _ in range(fits - 1):
         residual = offset - (powers @ fitted[..., None])[..., 0]
         robust = relative / (1 + (residual / (2 * EDGE_NOISE_PX)) ** 2)
-    return np.asarray(fitted, dtype=np.float64)
+        fitted = _least_squares(powers_and_offset, robust, prior)
+    return fitted
+
+
+def _least_squares(powers_and_offset: Array, weight: Array, prior: Array) -> Array:
+    """Solve for c (n, 4, 3) from profiles (n, 4, k, 4), each with a weight (n, 4, k)."""
+    weighted = powers_and_offset[..., :3] * weight[..., None]
+    sums = np.swapaxes(weighted, -1, -2) @ powers_and_offset
+    return np.asarray(np.linalg.solve(sums[..., :3] + prior, sums[..., 3:])[..., 0], dtype=np.float64)
 
 
 def _intersections(middle: Array, along: Array, outward: Array, length: Array, fitted: Array) -> Array:

@@ -1,7 +1,7 @@
 """Decode squares: read the code in the cells of each, and align the markers that are small."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -116,8 +116,8 @@ def _read(levels: Array, corners_px: Array, family: Family) -> _Readings:
             result = _matched(prepare(levels[unread]), threshold, family, tolerated)
             ids[unread], turns[unread], wrong[unread], matched[unread] = result
     (index,) = np.nonzero(matched)
-    upright = [np.roll(corners_px[at], turns[at], axis=0) for at in index]
-    return _Readings(index, np.array(upright).reshape(-1, 4, 2), ids[index].tolist(), wrong[index].tolist())
+    upright = corners_px[index[:, None], (np.arange(4) - turns[index, None]) % 4]
+    return _Readings(index, upright, ids[index].tolist(), wrong[index].tolist())
 
 
 def _sharpened(levels: Array) -> Array:
@@ -142,8 +142,7 @@ def _matched(
     matches, white_border = family.match(inner), cells.sum(axis=(1, 2)) - inner.sum(axis=(1, 2))
     border_cells = 4 * (family.cells + 1)
     matched = (matches.wrong <= tolerated) & (white_border <= MAX_WHITE_BORDER_SHARE * border_cells)
-    for at in np.nonzero(matched)[0]:
-        cells[at] = np.rot90(family.patterns[matches.ids[at]], matches.turns[at])
+    cells[matched] = family.turned_patterns[matches.ids[matched], matches.turns[matched]]
     matched &= _correlation(levels, cells) >= MIN_CORRELATION
     return matches.ids, matches.turns, matches.wrong + white_border, matched
 
@@ -183,18 +182,15 @@ def _read_in_place(pixels: Pixels, markers: Sequence[Marker], family: Family) ->
     wrong = (_binarised(levels) != patterns).sum(axis=(1, 2))
     shows_code = (wrong <= family.corrected) & (_correlation(levels, patterns) >= MIN_CORRELATION)
     (index,) = np.nonzero(shows_code & aligned.converged & (aligned.covered <= MAX_COVERED_CLEAR))
-    return [_moved(before[at][0], before[at][1], aligned, at, int(wrong[at])) for at in index.tolist()]
+    centres_px = aligned.corners_px.mean(axis=1)
+    return [_moved(*before[at], aligned, at, centres_px[at], int(wrong[at])) for at in index.tolist()]
 
 
-def _moved(marker: Marker, start: AlignmentStart, aligned: Alignment, at: int, wrong: int) -> Marker:
-    corners_px = aligned.corners_px[at]
-    motion_px = corners_px.mean(axis=0) - marker.centre_px
-    return replace(
-        marker,
-        corners_px=corners_px,
-        wrong=wrong,
-        covered=float(aligned.covered[at]),
-        start=AlignmentStart(start.corners_px + motion_px, aligned.photometric[at], motion_px),
+def _moved(marker: Marker, start: AlignmentStart, aligned: Alignment, at: int, centre_px: Array, wrong: int) -> Marker:
+    motion_px = centre_px - marker.centre_px
+    moved = AlignmentStart(start.corners_px + motion_px, aligned.photometric[at], motion_px)
+    return Marker(
+        marker.family, marker.id, aligned.corners_px[at], wrong, float(aligned.covered[at]), marker.initial_px, moved
     )
 
 

@@ -127,8 +127,10 @@ def _squares(markers: Sequence[Marker]) -> Array:
 def _distinct(markers: list[Marker]) -> list[Marker]:
     """Keep one marker in each place: the one with the fewest wrong cells."""
     kept: list[Marker] = []
+    taken_px: list[list[float]] = []
     for marker in sorted(markers, key=lambda each: each.wrong):
-        reach_px = SAME_PLACE_SIDES * marker.side_px
-        if not any(math.dist(marker.centre_px, each.centre_px) < reach_px for each in kept):
+        reach_px, centre_px = SAME_PLACE_SIDES * marker.side_px, marker.centre_px.tolist()
+        if not any(math.dist(centre_px, each_px) < reach_px for each_px in taken_px):
             kept.append(marker)
+            taken_px.append(centre_px)
     return kept

@@ -76,6 +76,11 @@ class Family:
         bits = self.codes[:, :1] >> np.arange(self.cells**2, dtype=np.uint64) & np.uint64(1)
         return np.pad(bits.astype(bool).reshape(-1, self.cells, self.cells), ((0, 0), (1, 1), (1, 1)))
 
+    @cached_property
+    def turned_patterns(self) -> Cells:
+        """All markers in each of the four turns in which they are read: (ids, 4, cells + 2, cells + 2)."""
+        return np.stack([np.rot90(self.patterns, turns, axes=(1, 2)) for turns in range(4)], axis=1)
+
     def only(self, ids: Collection[int]) -> Any:
         """Make an OpenCV dictionary of these ids alone, in rising order: fewer codes take less time to compare."""
         rows = np.ascontiguousarray(self.dictionary.bytesList[sorted(ids)])

@@ -1,9 +1,8 @@
 """A detected marker."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
-
-import numpy as np
 
 from actum.arrays import Array
 
@@ -59,8 +58,9 @@ class Marker:
     @cached_property
     def side_px(self) -> float:
         """Mean length of the four sides."""
-        sides = self.corners_px - self.corners_px[[3, 0, 1, 2]]
-        return float(np.sqrt((sides * sides).sum(axis=1)).mean())
+        first, second, third, fourth = self.corners_px.tolist()
+        dist = math.dist
+        return (dist(first, fourth) + dist(second, first) + dist(third, second) + dist(fourth, third)) / 4
 
     @cached_property
     def centre_px(self) -> Array:

@@ -52,14 +52,14 @@ class LastView:
         marker: the marker.
         stamp_ns: of that image.
         usually_covered: smoothed covered share; blur and misprints count as covered, too.
-        template: (height, width), grey levels of the marker with its white margin, scaled by `scale`.
-        scale: of the template, at most 1.
+        view: (height, width), grey levels of the marker with its white margin.
+        scale: at most 1, by which the view is scaled to look for the marker.
     """
 
     marker: Marker
     stamp_ns: int
     usually_covered: float
-    template: Pixels
+    view: Pixels
     scale: float
 
 
@@ -108,9 +108,8 @@ class PartialOcclusionTracker:
         if left < 0 or top < 0 or right > pixels.shape[1] or bottom > pixels.shape[0]:
             return
         scale = min(1.0, CELL_PX * (family(marker.family).cells + 2) / marker.side_px)
-        template = _scaled(pixels[top:bottom, left:right], scale)
         usual = self._usually_covered(marker, stamp_ns)
-        self._last[marker.key] = LastView(marker, stamp_ns, usual, template, scale)
+        self._last[marker.key] = LastView(marker, stamp_ns, usual, pixels[top:bottom, left:right].copy(), scale)
 
     def _usually_covered(self, marker: Marker, stamp_ns: int) -> float:
         last = self._last.get(marker.key)
@@ -126,10 +125,11 @@ def _follow(stamp_ns: int, pixels: Pixels, last: LastView) -> Marker | None:
     radius_sides = SEARCH_RADIUS_SIDES + SEARCH_SPEED_SIDES_PER_S * (stamp_ns - last.stamp_ns) / SECOND_NS
     left, top, right, bottom = _box(marker, radius_sides * marker.side_px)
     left, top = max(left, 0), max(top, 0)
+    template = _scaled(last.view, scale)
     window = _scaled(pixels[top : max(bottom, top), left : max(right, left)], scale)
-    if window.shape[0] < last.template.shape[0] or window.shape[1] < last.template.shape[1]:
+    if window.shape[0] < template.shape[0] or window.shape[1] < template.shape[1]:
         return None
-    _, correlation, _, place_px = cv2.minMaxLoc(cv2.matchTemplate(window, last.template, cv2.TM_CCOEFF_NORMED))
+    _, correlation, _, place_px = cv2.minMaxLoc(cv2.matchTemplate(window, template, cv2.TM_CCOEFF_NORMED))
     if not correlation >= MIN_CORRELATION:
         return None
     template_origin_px = np.array(_box(marker, 0.0)[:2])
@@ -148,9 +148,9 @@ def _follow(stamp_ns: int, pixels: Pixels, last: LastView) -> Marker | None:
 def _box(marker: Marker, extra_px: float) -> Box:
     """Enclose a marker with its white margin and extra pixels on each side."""
     margin = QUIET_ZONE_CELLS * marker.side_px / (family(marker.family).cells + 2) + extra_px
-    low = np.floor(marker.corners_px.min(axis=0) - margin).astype(int).tolist()
-    high = np.ceil(marker.corners_px.max(axis=0) + margin).astype(int).tolist()
-    return low[0], low[1], high[0] + 1, high[1] + 1
+    x, y = marker.corners_px.T.tolist()
+    left, top = math.floor(min(x) - margin), math.floor(min(y) - margin)
+    return left, top, math.ceil(max(x) + margin) + 1, math.ceil(max(y) + margin) + 1
 
 
 def _scaled(pixels: Pixels, scale: float) -> Pixels:

@@ -1,6 +1,7 @@
 """The camera of an image message: a pinhole with lens distortion, checked and scaled to the image's size."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -43,7 +44,22 @@ def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None
     Raises:
         UnusableImageError: of kind `bad_calibration` or `calibration_size_mismatch`.
     """
-    matrix = np.array(image.K, dtype=np.float64).reshape(3, 3)
+    size_px = image.width, image.height
+    return _checked(
+        tuple(image.K), tuple(image.distortion), tuple(image.skeleton_from_image), size_px, calibrated_size_px
+    )
+
+
+@lru_cache(maxsize=4)
+def _checked(
+    numbers: tuple[float, ...],
+    coefficients: tuple[float, ...],
+    transform: tuple[float, ...],
+    size_px: tuple[int, int],
+    calibrated_size_px: tuple[int, int] | None,
+) -> CameraModel:
+    """Check a calibration, once for all images of a camera."""
+    matrix = np.array(numbers, dtype=np.float64).reshape(3, 3)
     focal = (matrix[0, 0], matrix[1, 1])
     if not all(0 < f < LARGEST_FOCAL_PX for f in focal) or np.abs(matrix).max() > LARGEST_FOCAL_PX:
         raise UnusableImageError(
@@ -56,15 +72,15 @@ def camera_model(image: Image, calibrated_size_px: tuple[int, int] | None = None
         raise UnusableImageError(
             "bad_calibration", f"the last row of the camera matrix K is {matrix[2].tolist()}; it must be [0, 0, 1]"
         )
-    skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
+    skeleton_from_image = geometry.from_flat(transform)
     if not geometry.is_rigid(skeleton_from_image, MAX_COORDINATE_M):
         raise UnusableImageError(
             "bad_calibration",
             "skeleton_from_image, the transform to the camera that sees the people, is not a rigid transform: run "
             "'actum calibrate extrinsics' again",
         )
-    matrix = _matrix_for_size(matrix, (image.width, image.height), calibrated_size_px)
-    return CameraModel(matrix, _distortion(image.distortion), skeleton_from_image)
+    matrix = _matrix_for_size(matrix, size_px, calibrated_size_px)
+    return CameraModel(matrix, _distortion(coefficients), skeleton_from_image)
 
 
 def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tuple[int, int] | None) -> Array:
@@ -95,7 +111,7 @@ def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tup
     return scaled
 
 
-def _distortion(coefficients: list[float]) -> Array:
+def _distortion(coefficients: tuple[float, ...]) -> Array:
     if len(coefficients) not in DISTORTION_LENGTHS:
         allowed = ", ".join(map(str, DISTORTION_LENGTHS))
         raise UnusableImageError(

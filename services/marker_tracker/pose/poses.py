@@ -40,6 +40,10 @@ MIN_POSITION_NOISE_M = 5e-4
 """Least standard deviation of a position in metres: the sizes and places of markers are not known better."""
 HIDDEN_CONFIDENCE = 0.5
 """Confidence of a hidden object's pose relative to a visible one's: the hand that covers it may have released it."""
+_IDENTITY_3 = np.eye(3)
+"""The identity (3, 3): equal variances and no covariance between x, y and z."""
+_IDENTITY_4 = np.eye(4)
+"""The identity (4, 4): no motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,12 +147,12 @@ def _measurement(marked: MarkedObject, poses: Sequence[Pose], camera: CameraMode
 def _noise_m2(pose: Pose, side_px: float, camera: CameraModel) -> Array:
     """Covariance (3, 3) of a position from the corners' error: larger along the ray, by focal length over side (px)."""
     position_m = pose.camera_from_object[:3, 3]
-    distance_m = float(np.linalg.norm(position_m))
+    distance_m = math.sqrt(position_m @ position_m)
     corner_px = max(MIN_CORNER_NOISE_PX, pose.error_px)
     across_m, along_m = distance_m * corner_px / camera.matrix[0, 0], distance_m * corner_px / side_px
     ray = camera.skeleton_from_image[:3, :3] @ (position_m / distance_m)
     across_m2 = across_m**2 + MIN_POSITION_NOISE_M**2
-    noise_m2: Array = (along_m**2 - across_m**2) * np.outer(ray, ray) + across_m2 * np.eye(3)
+    noise_m2: Array = (along_m**2 - across_m**2) * (ray[:, None] * ray) + across_m2 * _IDENTITY_3
     return noise_m2
 
 
@@ -196,7 +200,7 @@ def _refined(
         initial_px = _error_px(points_m, corners_px, camera, rotation, translation_m)
         if not error_px <= initial_px:
             turned, moved_m, error_px = rotation, translation_m, initial_px
-    transform = np.eye(4)
+    transform = _IDENTITY_4.copy()
     transform[:3, :3] = cv2.Rodrigues(turned)[0]
     transform[:3, 3] = moved_m.ravel()
     return transform, error_px
@@ -209,8 +213,8 @@ def _floats(vector: object) -> Array:
 def _error_px(points_m: Array, corners_px: Array, camera: CameraModel, rotation: Array, translation_m: Array) -> float:
     """Root mean square distance of projected points (n, 3) from corners (n, 2)."""
     projected = cv2.projectPoints(points_m, rotation, translation_m, camera.matrix, camera.distortion)[0][:, 0]
-    off = projected - corners_px
-    return math.sqrt(float((off * off).sum()) / len(off))
+    off = (projected - corners_px).ravel()
+    return math.sqrt(2 * float(off @ off) / len(off))
 
 
 def _is_possible(error_px: float, least_px: float) -> bool:
