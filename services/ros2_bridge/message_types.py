@@ -10,6 +10,8 @@ from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from ros2_bridge.hri import types as hri
+
 STRING = "std_msgs/msg/String"
 MARKER_ARRAY = "visualization_msgs/msg/MarkerArray"
 TF_MESSAGE = "tf2_msgs/msg/TFMessage"
@@ -28,9 +30,10 @@ DEFINITIONS = {
     "vision_msgs/msg/Detection3D": "std_msgs/Header header\nObjectHypothesisWithPose[] results\nBoundingBox3D bbox\n"
     "string id",
     DETECTION_3D_ARRAY: "std_msgs/Header header\nDetection3D[] detections",
+    **hri.DEFINITIONS,
     **{name: (Path(__file__).parent / f"{name}.msg").read_text(encoding="utf-8") for name in OWN},
 }
-"""What `rosbags` lacks: those of vision_msgs 4, of Humble and later, and our own."""
+"""What `rosbags` lacks: those of vision_msgs 4, of Humble and later, of ROS4HRI, and our own."""
 
 _ZERO: dict[str, Any] = {"string": "", "bool": False}
 """The default values of primitive types that are not numbers."""
