@@ -25,9 +25,13 @@ HASHES = {
     "hri_msgs/msg/IdsList": "RIHS01_7e0812d1ac945c98fd3e393568d581ad0ab567f37b24eff633eab778c1bfe62d",
     "hri_msgs/msg/Skeleton2D": "RIHS01_1cb61f012db6ca43c48fa0097ccab9a00108ea39323c13f01bb983323c1e3420",
     "hri_msgs/msg/Gesture": "RIHS01_06e95e9d3a204e075adfa05b9d737e48c51e1a2004ef762886ff82438bc9958d",
+    "hri_msgs/msg/BodyPosture": "RIHS01_fa4258f18cc616a912e5aa1d48dbfead0fa5235a8546b4c69b70d64db7cef570",
+    "hri_msgs/msg/IdsMatch": "RIHS01_1c649d4a87ca2d4fe5f606395e83a863640e411c9192dfda6d399a68019966f0",
+    "hri_actions_msgs/msg/Intent": "RIHS01_850d5c0a06aecf153f4cbc75f27fc655d687f93300bcc928a9d21712716fcfaa",
     "hri_msgs/msg/NormalizedRegionOfInterest2D": "RIHS01_2e50c93f1ca166ee77af9a5424dc951ae4e452b740162a7f83c082d917dcaff5",  # noqa: E501
 }
-"""As other programs have them that speak with ROS 2."""
+"""As other programs have them that speak with ROS 2; those of ROS4HRI computed from the files of the releases for
+Jazzy, hri_msgs 2.3.2 and hri_actions_msgs 2.5.0."""
 STRING = f"std_msgs::msg::dds_::String_/{HASHES['std_msgs/msg/String']}"
 
 
