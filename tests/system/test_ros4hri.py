@@ -116,6 +116,24 @@ def test_topics_vanish_with_the_person_and_come_back_under_another_id(running: S
         wait_until(another, "the person is another body")
 
 
+@pytest.mark.pose_model
+@pytest.mark.data
+def test_a_person_in_a_webcams_clip_is_a_body_with_a_place_in_the_image(
+    running: System, node: RosNode, data: Path
+) -> None:
+    clip = data / "florence3d_rgb" / "GestureRecording_Id1actor1idAction1category1.mp4"
+    running.start("sensor_gateway", "--source", "camera", "--camera", str(clip))
+    body = somebody(node, "bodies")
+    points = node.wait_for(f"humans/bodies/{body}/skeleton2d", hri.SKELETON_2D).skeleton
+    region = node.wait_for(f"humans/bodies/{body}/roi", hri.REGION)
+    nose, right_shoulder, left_shoulder = points[0], points[2], points[5]
+    assert nose.y < min(right_shoulder.y, left_shoulder.y)
+    assert right_shoulder.x < left_shoulder.x, "the person faces the camera"
+    assert region.xmin <= right_shoulder.x <= region.xmax
+    assert region.ymin <= nose.y <= region.ymax
+    assert node.wait_for(f"humans/bodies/{body}/joint_states", hri.JOINT_STATE).name
+
+
 LISTENER = """
 import sys, threading
 from zenoh_ros2_sdk import ROS2Subscriber
