@@ -129,7 +129,7 @@ def _detection(of: Any, item: TrackedObject) -> Any:
 
 def action_event(event: Event, frame_id: str) -> Any:
     """Return an ActionEvent; a text that is not known is empty."""
-    texts = {name: getattr(event, name) or "" for name in ("reason", "hand", "action", "outcome")}
+    texts = {name: getattr(event, name) or "" for name in ("reason", "hand", "action", "outcome", "result", "why")}
     return made(
         ACTION_EVENT,
         header=header(event.stamp_ns, frame_id),
@@ -144,13 +144,21 @@ def action_event(event: Event, frame_id: str) -> Any:
         displacement_known=event.motion is not None,
         displacement=vector(event.motion.displacement_m if event.motion else (0, 0, 0)),
         sentence=event.sentence,
+        agreement_known=event.agrees is not None,
+        agrees=bool(event.agrees),
+        candidate_ids=[str(each.id) for each in event.candidates],
         **texts,
         **(_acted_on(event.object) if event.object else {}),
     )
 
 
 def _acted_on(item: ActedObject) -> dict[str, Any]:
-    fields = {"object_id": str(item.id), "object_name": item.name}
+    fields = {
+        "object_id": str(item.id),
+        "object_name": item.name,
+        "taken_along": item.taken_along,
+        "in_hand_at_end": item.in_hand_at_end,
+    }
     if item.pose is None:
         return fields
     turned = item.pose.quaternion_xyzw

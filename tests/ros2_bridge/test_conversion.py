@@ -199,6 +199,17 @@ def test_an_event_says_where_the_object_ended_as_far_as_that_is_known(quaternion
     assert (typed.displacement_known, xyz(typed.displacement)) == (True, [0.1, 0.2, 0.3])
 
 
+def test_an_event_says_what_became_of_the_object_and_whether_that_was_meant() -> None:
+    acted = told().object
+    assert acted is not None
+    lifted = acted.model_copy(update={"taken_along": True, "in_hand_at_end": True})
+    typed = put(told(object=lifted, result="0.18 m up", agrees=True))["event"]
+    assert (typed.result, typed.agreement_known, typed.agrees) == ("0.18 m up", True, True)
+    assert (typed.taken_along, typed.in_hand_at_end) == (True, True)
+    unsure = put(told(object=None, why="two cups", candidates=[acted, acted.model_copy(update={"id": 2})]))["event"]
+    assert (unsure.why, unsure.candidate_ids, unsure.agreement_known) == ("two cups", ["1", "2"], False)
+
+
 def test_an_event_that_is_not_valid_says_why() -> None:
     typed = put(told(valid=False, reason="too few frames", object=None, action=None))["event"]
     assert (typed.valid, typed.reason, typed.action, typed.object_id) == (False, "too few frames", "", "")
@@ -286,24 +297,28 @@ CARRIED = {
     "sensor": {"header"},
     "start_ns": {"start"},
     "end_ns": {"end"},
-    "object": {"object_id", "object_name", "position_known", "orientation_known", "object_pose"},
+    "object": {
+        *("object_id", "object_name", "position_known", "orientation_known", "object_pose"),
+        *("taken_along", "in_hand_at_end"),
+    },
+    "agrees": {"agreement_known", "agrees"},
+    "candidates": {"candidate_ids"},
     "held": {"held_id"},
     "motion": {"displacement_known", "displacement"},
     **{
         name: {name}
         for name in (
             *("segment_id", "valid", "reason", "agent", "hand", "action", "confidence", "unknown"),
-            *("outcome", "sentence"),
+            *("outcome", "sentence", "result", "why"),
         )
     },
 }
 """The fields of ActionEvent.msg in which each field of an event is carried."""
 ONLY_IN_JSON = {
     *("seq", "session_id", "frames", "missed", "missing_joints"),
-    *("activations", "objects_present", "distances_m", "candidates"),
-    *("pointing", "result", "agrees", "why"),
+    *("activations", "objects_present", "distances_m", "pointing"),
 }
-"""The fields of an event that only `event_json` carries: how it travelled, what was weighed, and other words."""
+"""The fields of an event that only `event_json` carries: how it travelled, and what was weighed."""
 
 
 def test_every_field_of_an_event_is_carried_or_left_to_the_json() -> None:
