@@ -142,7 +142,9 @@ class Humans:
     def _seen(self, of: Any, agent: Agent, joints: Array, message: Skeleton, placed: list[Any]) -> Iterator[Output]:
         """Publish one person; the transforms are added to `placed`."""
         human = self._present.of(agent.agent, message.session_id)
-        assert human is not None
+        if human is None:
+            self._counters.counts["one person too many, left out of /humans"] += 1
+            return
         chosen, on = self._settings.ros_topics, self._topics.on
         body = body_of(joints)
         if body is not None:
