@@ -13,7 +13,7 @@ from actum.messages import Agent, Event, Image, Intent, Message, Objects, Skelet
 from actum.node import Counters, Tick
 from actum.skeletons import JOINTS
 from ros2_bridge import conversion, frames, topics
-from ros2_bridge.hri.humans import Humans
+from ros2_bridge.hri_out.humans import Humans
 from ros2_bridge.marks import BadMarkError, segment_of
 from ros2_bridge.message_types import to_cdr
 from ros2_bridge.settings import Settings

@@ -14,7 +14,7 @@ from actum.messages import Event
 from events import event
 from humans import Room
 from people import STANDING, skeleton
-from ros2_bridge.hri.mapping import INTENT_NAMES, GestureName, Mapping, MappingError, load
+from ros2_bridge.hri_out.mapping import INTENT_NAMES, GestureName, Mapping, MappingError, load
 
 MAPPING = """
 gestures:

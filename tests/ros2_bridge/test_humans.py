@@ -12,7 +12,7 @@ pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 from actum.messages import MOST_AGENTS
 from humans import NEAR, Room, image
 from people import STANDING, lacking, skeleton, turned
-from ros2_bridge.hri.body import LINKS, body_of
+from ros2_bridge.hri_out.body import LINKS, body_of
 from ros2_bridge.topics import PUBLISHED
 
 AT_NS = 7_000_000_008

@@ -11,7 +11,7 @@ from conftest import NEEDS_ROS2_EXTRA
 
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
-from ros2_bridge.hri.mapping import load
+from ros2_bridge.hri_out.mapping import load
 from ros2_bridge.settings import Settings
 from ros2_bridge.topics import node
 from scene_simulator.programme import ACTIONS

@@ -8,14 +8,14 @@ from actum.bridge import ForeignTopic, Output
 from actum.messages import Agent, Event, Image, Skeleton
 from actum.node import SECOND_NS, Counters
 from ros2_bridge.frames import header
-from ros2_bridge.hri import converting
 from ros2_bridge.hri import types as hri
-from ros2_bridge.hri.announcing import Announcing
-from ros2_bridge.hri.body import body_of
-from ros2_bridge.hri.camera import Camera, UnusableCameraError
-from ros2_bridge.hri.mapping import load
-from ros2_bridge.hri.posture import posture_of
-from ros2_bridge.hri.present import Human, Present
+from ros2_bridge.hri_out import converting
+from ros2_bridge.hri_out.announcing import Announcing
+from ros2_bridge.hri_out.body import body_of
+from ros2_bridge.hri_out.camera import Camera, UnusableCameraError
+from ros2_bridge.hri_out.mapping import load
+from ros2_bridge.hri_out.posture import posture_of
+from ros2_bridge.hri_out.present import Human, Present
 from ros2_bridge.message_types import STRING, TF_MESSAGE, made
 from ros2_bridge.settings import Settings
 from ros2_bridge.topics import BODIES_TRACKED, CANDIDATE_MATCHES, INTENTS, PERSONS_TRACKED, TF
