@@ -33,7 +33,7 @@ class Ros2Bridge:
 
     def __init__(self, settings: Settings) -> None:
         self.inputs: tuple[keys.Topic, ...] = (keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT)
-        if "bodies" in settings.ros_topics:
+        if {"bodies", "cropped"} & settings.ros_topics:
             self.inputs += (keys.COLOR,)
         self.counters = Counters()
         self._settings = settings

@@ -10,9 +10,12 @@ from pydantic_settings import NoDecode
 from actum.settings import ServiceSettings
 
 TopicName = Literal[
-    "skeletons", "tf", "objects", "event", "event_json", "intent", "mark", "bodies", "body_links", "persons", "intents"
-]
-"""What can be published and, of `mark`, subscribed to. The last four are ROS4HRI's."""
+    "skeletons", "tf", "objects", "event", "event_json", "intent", "mark",
+    "bodies", "body_links", "cropped", "persons", "intents",
+]  # fmt: skip
+"""What can be published and, of `mark`, subscribed to. The last five are ROS4HRI's."""
+UNLESS_CHOSEN: frozenset[TopicName] = frozenset(get_args(TopicName)) - {"cropped"}
+"""What is exchanged unless topics are chosen: all but pictures of people."""
 ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 """The characters of ROS 2's names, without the slash before them."""
 HIGHEST_DOMAIN = 232
@@ -40,8 +43,11 @@ class Settings(ServiceSettings):
         ),
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
-        frozenset(get_args(TopicName)),
-        description="the topics to exchange with ROS 2, separated by commas, such as event,mark",
+        UNLESS_CHOSEN,
+        description=(
+            "the topics to exchange with ROS 2, separated by commas, such as event,mark; default: all except cropped, "
+            "which publishes images of people"
+        ),
     )
     ros_hri_mapping: Path | None = Field(
         None,

@@ -56,6 +56,7 @@ class Human:
         """Yield the body's topics that a camera is needed for."""
         yield RosTopic(self.body_topic("roi"), hri.REGION, "bodies")
         yield RosTopic(self.body_topic("skeleton2d"), hri.SKELETON_2D, "bodies")
+        yield RosTopic(self.body_topic("cropped"), hri.IMAGE, "cropped")
 
 
 class Present:
