@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 import zenoh
@@ -20,6 +20,7 @@ pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 from people import STANDING, skeleton
 from ros2_bridge import message_types as types
 from ros2_bridge.hri import types as hri
+from ros2_bridge.settings import TopicName
 from ros2_nodes import RosNode, config
 from ros2_reading import read
 
@@ -31,6 +32,7 @@ intents: {wave: {intent: BRING_OBJECT, object: "{object}", recipient: "{person}"
 OF_BODY = {
     "roi": hri.REGION,
     "skeleton2d": hri.SKELETON_2D,
+    "cropped": hri.IMAGE,
     "joint_states": hri.JOINT_STATE,
     "posture": hri.BODY_POSTURE,
     "gesture": hri.GESTURE,
@@ -48,7 +50,10 @@ def node(running: System, tmp_path: Path) -> Iterator[RosNode]:
     """A ROS 2 node that sees the bridge."""
     (tmp_path / "mapping.yaml").write_text(MAPPING, encoding="utf-8")
     running.start_router()
-    running.start("actum_command", "ros2", "--ros-hri-mapping", str(tmp_path / "mapping.yaml"))
+    everything = ",".join(get_args(TopicName))
+    running.start(
+        "actum_command", "ros2", "--ros-hri-mapping", str(tmp_path / "mapping.yaml"), "--ros-topics", everything
+    )
     with running.client() as client:
         running.wait_for_services(client, "ros2_bridge")
         assert client.wait_for_subscriber(keys.SKELETON, PATIENCE_S)
