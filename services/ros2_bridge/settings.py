@@ -1,6 +1,7 @@
 """Settings of the bridge to ROS 2."""
 
 import re
+from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
@@ -8,8 +9,13 @@ from pydantic_settings import NoDecode
 
 from actum.settings import ServiceSettings
 
-TopicName = Literal["skeletons", "tf", "objects", "event", "event_json", "intent", "mark"]
-"""What can be published and, of `mark`, subscribed to."""
+TopicName = Literal[
+    "skeletons", "tf", "objects", "event", "event_json", "intent", "mark",
+    "bodies", "body_links", "cropped", "persons", "intents",
+]  # fmt: skip
+"""What can be published and, of `mark`, subscribed to. The last five are ROS4HRI's."""
+UNLESS_CHOSEN: frozenset[TopicName] = frozenset(get_args(TopicName)) - {"cropped"}
+"""What is exchanged unless topics are chosen: all but pictures of people."""
 ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 """The characters of ROS 2's names, without the slash before them."""
 HIGHEST_DOMAIN = 232
@@ -37,8 +43,17 @@ class Settings(ServiceSettings):
         ),
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
-        frozenset(get_args(TopicName)),
-        description="the topics to exchange with ROS 2, separated by commas, such as event,mark",
+        UNLESS_CHOSEN,
+        description=(
+            "the topics to exchange with ROS 2, separated by commas, such as event,mark; default: all except cropped, "
+            "which publishes images of people"
+        ),
+    )
+    ros_hri_mapping: Path | None = Field(
+        None,
+        description=(
+            "a YAML file that says which actions are gestures and intents in the words of ROS4HRI; default: none are"
+        ),
     )
     ros_frame_id: str | None = Field(
         None,

@@ -7,6 +7,7 @@ from functools import partial
 
 from actum.bridge import ForeignNode, ForeignTopic
 from ros2_bridge import message_types as types
+from ros2_bridge.hri import types as hri
 from ros2_bridge.settings import Settings, TopicName
 
 NODE = "bridge"
@@ -37,27 +38,42 @@ EVENT = RosTopic("event", types.ACTION_EVENT, "event", depth=1, latched=True)
 EVENT_JSON = RosTopic("event_json", types.STRING, "event_json", depth=1, latched=True)
 INTENT = RosTopic("intent", types.ACTION_INTENT, "intent")
 MARK = RosTopic("mark", types.STRING, "mark")
+BODIES_TRACKED = RosTopic("/humans/bodies/tracked", hri.IDS_LIST, "bodies")
+PERSONS_TRACKED = RosTopic("/humans/persons/tracked", hri.IDS_LIST, "persons")
+CANDIDATE_MATCHES = RosTopic("/humans/candidate_matches", hri.IDS_MATCH, "persons")
+INTENTS = RosTopic("/intents", hri.INTENT, "intents")
 
-PUBLISHED = (SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON, INTENT)
+PUBLISHED = (
+    *(SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON, INTENT),
+    *(BODIES_TRACKED, PERSONS_TRACKED, CANDIDATE_MATCHES, INTENTS),
+)
+"""Published as long as the bridge runs. Those of one body or person, in `ros2_bridge.hri_out.present`, come and go."""
 SUBSCRIBED = (MARK,)
 
 
 def node(settings: Settings, session_id: str) -> ForeignNode:
     """Return what the bridge declares in a Zenoh session: a node with the chosen topics."""
-    chosen = settings.ros_topics
-    own = f"@ros2_lv/{settings.ros_domain_id}/{session_id}/0"
-    names = f"%/{_mangled(settings.namespace)}/{NODE}"
-    publishes = [
-        _declared(topic, settings, f"{own}/{number}/MP/{names}")
-        for number, topic in enumerate(PUBLISHED, 1)
-        if topic.chosen_by in chosen
-    ]
-    subscribes = [
-        _declared(topic, settings, f"{own}/{number}/MS/{names}")
-        for number, topic in enumerate(SUBSCRIBED, 1 + len(PUBLISHED))
-        if topic.chosen_by in chosen
-    ]
-    return ForeignNode(f"{own}/0/NN/{names}", tuple(publishes), tuple(subscribes))
+    numbered = enumerate((*PUBLISHED, *SUBSCRIBED), 1)
+    chosen = [(number, topic) for number, topic in numbered if topic.chosen_by in settings.ros_topics]
+    return ForeignNode(
+        _entity(settings, session_id, 0, "NN"),
+        tuple(published(topic, settings, session_id, number) for number, topic in chosen if topic in PUBLISHED),
+        tuple(
+            _declared(topic, settings, _entity(settings, session_id, number, "MS"))
+            for number, topic in chosen
+            if topic in SUBSCRIBED
+        ),
+    )
+
+
+def published(topic: RosTopic, settings: Settings, session_id: str, number: int) -> ForeignTopic:
+    """Return a topic as the bridge publishes it; `number` is no other's of the session."""
+    return _declared(topic, settings, _entity(settings, session_id, number, "MP"))
+
+
+def _entity(settings: Settings, session_id: str, number: int, kind: str) -> str:
+    """Return the beginning of the token of the node (NN), a publisher (MP) or a subscriber (MS)."""
+    return f"@ros2_lv/{settings.ros_domain_id}/{session_id}/0/{number}/{kind}/%/{_mangled(settings.namespace)}/{NODE}"
 
 
 def _declared(topic: RosTopic, settings: Settings, entity: str) -> ForeignTopic:

@@ -13,6 +13,7 @@ pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 from actum.bridge import Foreign
 from actum.messages import (
     Event,
+    Image,
     Intended,
     Intent,
     Message,
@@ -34,6 +35,8 @@ from ros2_bridge.settings import Settings
 from ros2_bridge.topics import PUBLISHED
 from ros2_reading import read
 
+TODAYS = "skeletons,tf,objects,event,event_json,intent,mark"
+"""All topics but those of ROS4HRI, which come and go with the people."""
 AT_NS = 7 * SECOND_NS + 8
 TYPES = {topic.name: topic.type for topic in PUBLISHED}
 CUP = TrackedObject(
@@ -54,8 +57,8 @@ REACHING = Intent(
 
 def put(*messages: Message | Tick, **settings: Any) -> dict[str, Any]:
     """What a new bridge puts, as who subscribes reads it, by topic."""
-    bridge = Ros2Bridge(Settings(**settings))
-    foreign = [answer for message in messages for answer in bridge.handle(message)]
+    bridge = Ros2Bridge(Settings(**{"ros_topics": TODAYS, **settings}))
+    foreign = [answer for message in messages for answer in bridge.handle(message) if isinstance(answer, Foreign)]
     assert not bridge.counters.rejects
     assert len({answer.topic for answer in foreign}) == len(foreign)
     return {answer.topic: read(TYPES[answer.topic], answer.payload) for answer in foreign}
@@ -134,7 +137,7 @@ def test_a_person_facing_the_camera_is_turned_to_face_it() -> None:
 
 
 def test_the_camera_is_told_of_once_and_lies_in_its_link_as_urdfs_say_it() -> None:
-    bridge = Ros2Bridge(Settings())
+    bridge = Ros2Bridge(Settings(ros_topics=TODAYS))
     [once] = bridge.handle(Tick(1))
     assert list(bridge.handle(Tick(2))) == []
     [transform] = read(types.TF_MESSAGE, once.payload).transforms
@@ -196,6 +199,17 @@ def test_an_event_says_where_the_object_ended_as_far_as_that_is_known(quaternion
     assert (typed.displacement_known, xyz(typed.displacement)) == (True, [0.1, 0.2, 0.3])
 
 
+def test_an_event_says_what_became_of_the_object_and_whether_that_was_meant() -> None:
+    acted = told().object
+    assert acted is not None
+    lifted = acted.model_copy(update={"taken_along": True, "in_hand_at_end": True})
+    typed = put(told(object=lifted, result="0.18 m up", agrees=True))["event"]
+    assert (typed.result, typed.agreement_known, typed.agrees) == ("0.18 m up", True, True)
+    assert (typed.taken_along, typed.in_hand_at_end) == (True, True)
+    unsure = put(told(object=None, why="two cups", candidates=[acted, acted.model_copy(update={"id": 2})]))["event"]
+    assert (unsure.why, unsure.candidate_ids, unsure.agreement_known) == ("two cups", ["1", "2"], False)
+
+
 def test_an_event_that_is_not_valid_says_why() -> None:
     typed = put(told(valid=False, reason="too few frames", object=None, action=None))["event"]
     assert (typed.valid, typed.reason, typed.action, typed.object_id) == (False, "too few frames", "", "")
@@ -253,10 +267,10 @@ def test_a_stamp_that_ros_has_no_number_for_is_refused(message) -> None:
 
 @pytest.mark.parametrize("bad", [float("inf"), float("nan"), -1e300])
 def test_a_joint_that_cannot_be_counts_as_missing(bad) -> None:
-    bridge = Ros2Bridge(Settings())
+    bridge = Ros2Bridge(Settings(ros_topics=TODAYS))
     message = skeleton(AT_NS, STANDING)
     message.agents[0].joints[INDEX["left_hand"]] = [0.0, bad, 2.0]
-    foreign: dict[str, Foreign] = {it.topic: it for it in bridge.handle(message)}
+    foreign: dict[str, Foreign] = {it.topic: it for it in bridge.handle(message) if isinstance(it, Foreign)}
     markers = read(types.MARKER_ARRAY, foreign["skeletons"].payload).markers
     assert len(markers[0].points) == 14
     assert bridge.counters.rejects == {"bad_joint": 1}
@@ -271,7 +285,8 @@ def test_what_is_put_can_be_put_by_any_sender_of_ours() -> None:
 
 
 def test_messages_of_other_kinds_are_nothing_to_it() -> None:
-    assert {topic.message for topic in Ros2Bridge.inputs} == {Skeleton, Objects, Event, Intent}
+    assert {topic.message for topic in Ros2Bridge(Settings()).inputs} == {Skeleton, Objects, Event, Intent, Image}
+    assert Image not in {topic.message for topic in Ros2Bridge(Settings(ros_topics=TODAYS)).inputs}
     start = Segment(sensor="kinect0", kind="start", segment_id="a")
     assert start.stamp_ns is None
     assert put(start) == {}
@@ -282,24 +297,28 @@ CARRIED = {
     "sensor": {"header"},
     "start_ns": {"start"},
     "end_ns": {"end"},
-    "object": {"object_id", "object_name", "position_known", "orientation_known", "object_pose"},
+    "object": {
+        *("object_id", "object_name", "position_known", "orientation_known", "object_pose"),
+        *("taken_along", "in_hand_at_end"),
+    },
+    "agrees": {"agreement_known", "agrees"},
+    "candidates": {"candidate_ids"},
     "held": {"held_id"},
     "motion": {"displacement_known", "displacement"},
     **{
         name: {name}
         for name in (
             *("segment_id", "valid", "reason", "agent", "hand", "action", "confidence", "unknown"),
-            *("outcome", "sentence"),
+            *("outcome", "sentence", "result", "why"),
         )
     },
 }
 """The fields of ActionEvent.msg in which each field of an event is carried."""
 ONLY_IN_JSON = {
     *("seq", "session_id", "frames", "missed", "missing_joints"),
-    *("activations", "objects_present", "distances_m", "candidates"),
-    *("pointing", "result", "agrees", "why"),
+    *("activations", "objects_present", "distances_m", "pointing"),
 }
-"""The fields of an event that only `event_json` carries: how it travelled, what was weighed, and other words."""
+"""The fields of an event that only `event_json` carries: how it travelled, and what was weighed."""
 
 
 def test_every_field_of_an_event_is_carried_or_left_to_the_json() -> None:

@@ -22,8 +22,16 @@ HASHES = {
     "tf2_msgs/msg/TFMessage": "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087",
     "visualization_msgs/msg/MarkerArray": "RIHS01_86cb8800b6fb05b5eff1abd7a56f62a5641d3ae9a1c29e78e67e704f1d067dcf",
     "vision_msgs/msg/Detection3DArray": "RIHS01_793f5eab9595ac1c0da07873cc859db42eae51f0ee76056db8562515d830e018",
+    "hri_msgs/msg/IdsList": "RIHS01_7e0812d1ac945c98fd3e393568d581ad0ab567f37b24eff633eab778c1bfe62d",
+    "hri_msgs/msg/Skeleton2D": "RIHS01_1cb61f012db6ca43c48fa0097ccab9a00108ea39323c13f01bb983323c1e3420",
+    "hri_msgs/msg/Gesture": "RIHS01_06e95e9d3a204e075adfa05b9d737e48c51e1a2004ef762886ff82438bc9958d",
+    "hri_msgs/msg/BodyPosture": "RIHS01_fa4258f18cc616a912e5aa1d48dbfead0fa5235a8546b4c69b70d64db7cef570",
+    "hri_msgs/msg/IdsMatch": "RIHS01_1c649d4a87ca2d4fe5f606395e83a863640e411c9192dfda6d399a68019966f0",
+    "hri_actions_msgs/msg/Intent": "RIHS01_850d5c0a06aecf153f4cbc75f27fc655d687f93300bcc928a9d21712716fcfaa",
+    "hri_msgs/msg/NormalizedRegionOfInterest2D": "RIHS01_2e50c93f1ca166ee77af9a5424dc951ae4e452b740162a7f83c082d917dcaff5",  # noqa: E501
 }
-"""As other programs have them that speak with ROS 2."""
+"""As other programs have them that speak with ROS 2; those of ROS4HRI computed from the files of the releases for
+Jazzy, hri_msgs 2.3.2 and hri_actions_msgs 2.5.0."""
 STRING = f"std_msgs::msg::dds_::String_/{HASHES['std_msgs/msg/String']}"
 
 
@@ -32,9 +40,10 @@ def test_types_have_the_hashes_by_which_ros_knows_them() -> None:
 
 
 OWN_HASHES = {
-    "actum_msgs/msg/ActionEvent": "RIHS01_bca8cd7bdc88f3ddf620f9504d7d3bf9c418dde90fbe9ac81089fb2ffe8211a1",
+    "actum_msgs/msg/ActionEvent": "RIHS01_5ff55f7cce7bd2e62ca7023b5a2d3676ab2185747e922c831c63cca4fa5a639e",
     "actum_msgs/msg/ActionIntent": "RIHS01_bea2105f464a869011676c1e27e0aec06d15aa833de0487f00ef82e618f1d01c",
     "actum_msgs/msg/IntendedContact": "RIHS01_d0a7dcef45a32c2dac299e2b64ec6d64ea13b41dbcb78cb06f5012958eb4d5ea",
+    "actum_msgs/msg/PersonAction": "RIHS01_5b617083ac53fc605a8b45c54b6dc15db9e083cf6a1d0833810adac1b678d2c9",
 }
 
 
@@ -52,6 +61,7 @@ def test_topics_stand_in_the_sensors_namespace_and_transforms_at_the_root() -> N
     assert [topic.key.split("::")[0].rpartition("/")[0] for topic in declared.publishes] == [
         "0/actum/kinect0/skeletons", "0/tf", "0/tf_static", "0/actum/kinect0/objects", "0/actum/kinect0/event",
         "0/actum/kinect0/event_json", "0/actum/kinect0/intent",
+        "0/humans/bodies/tracked", "0/humans/persons/tracked", "0/humans/candidate_matches", "0/intents",
     ]  # fmt: skip
     assert [topic.key for topic in declared.subscribes] == [f"0/actum/kinect0/mark/{STRING}"]
 
@@ -62,7 +72,7 @@ def test_tokens_tell_of_the_node_its_topics_and_their_quality_of_service() -> No
     tokens = {topic.name: topic.token for topic in (*declared.publishes, *declared.subscribes)}
     entity = "%/%actum%kinect0/bridge"
     assert tokens["event_json"] == f"@ros2_lv/0/5e55/0/6/MP/{entity}/%actum%kinect0%event_json/{STRING}/:1:,1:,:,:,,"
-    assert tokens["mark"] == f"@ros2_lv/0/5e55/0/8/MS/{entity}/%actum%kinect0%mark/{STRING}/::,10:,:,:,,"
+    assert tokens["mark"] == f"@ros2_lv/0/5e55/0/12/MS/{entity}/%actum%kinect0%mark/{STRING}/::,10:,:,:,,"
     assert tokens["/tf"].endswith(f"/MP/{entity}/%tf/tf2_msgs::msg::dds_::TFMessage_/{HASHES[PUBLISHED[1].type]}/::,100:,:,:,,")  # fmt: skip # noqa: E501
     assert len({token.split("/")[4] for token in tokens.values()}) == len(tokens), "each has a number of its own"
 

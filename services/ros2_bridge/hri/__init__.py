@@ -1,0 +1,1 @@
+"""What both directions share of ROS4HRI (REP 155)."""
