@@ -23,7 +23,7 @@ from actum.settings import ServiceSettings
 from forked import Forked
 
 PATIENCE_S = 30.0
-POLL_S = 0.005
+POLL_S = 0.02
 ROUTER = """import sys
 from pathlib import Path
 from actum.runtime import serve_router, stop_on_signals
