@@ -21,6 +21,18 @@ BY_SERVICE = {service: role for role in ROLES for service in role.services}
 """The role of each service."""
 MODULES = {"scene_simulator": "sensor_gateway"}
 """The service's name of each program that has another."""
+ROUTER = ("-m", "actum_command", "router")
+BARE_ROUTER = (
+    "-c",
+    """import logging, sys
+from pathlib import Path
+from actum.runtime import serve_router, stop_on_signals
+logging.basicConfig(level="INFO")
+_, _, configuration, _, credentials = sys.argv
+serve_router(None, Path(configuration), stop_on_signals(), Path(credentials))
+""",
+)
+"""A secured router without the command line around it, which takes longer to start whenever credentials change."""
 
 
 @dataclass
@@ -29,6 +41,8 @@ class Deployed:
 
     deployment: Deployment
     root: Path
+    router: Sequence[str] = ROUTER
+    """The arguments of Python that start a router."""
     running: list[Running] = field(default_factory=list)
 
     def credentials(self, identity: str) -> Path:
@@ -58,7 +72,7 @@ class Deployed:
         folder = self.root / host
         credentials = ("--credentials", str(folder / "credentials" / "router")) if self.deployment.secured else ()
         files = ("--config", str(folder / "router.json5"), *credentials)
-        running = self._start(f"router-{host}", {**os.environ}, "-m", "actum_command", "router", *files)
+        running = self._start(f"router-{host}", {**os.environ}, *self.router, *files)
         wait_until(lambda: "listens on" in running.said(), f"the router of {host} listens")
         return running
 
@@ -106,9 +120,9 @@ def described(sensors: Sequence[str] = ("kinect0",), **options: Any) -> Deployme
 
 
 @contextmanager
-def deployed(root: Path, **options: Any) -> Iterator[Deployed]:
+def deployed(root: Path, router: Sequence[str] = ROUTER, **options: Any) -> Iterator[Deployed]:
     """Write a deployment and run its routers."""
-    made = Deployed(described(**options), root)
+    made = Deployed(described(**options), root, router)
     write_deployment(made.deployment, root, days=30)
     try:
         for host in made.deployment.routers:

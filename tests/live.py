@@ -23,7 +23,9 @@ from actum.settings import ServiceSettings
 from forked import Forked
 
 PATIENCE_S = 30.0
-POLL_S = 0.005
+POLL_S = 0.02
+FEW_IMAGES_HZ = "5"
+"""Where any event will do: most of a simulated scene's CPU is drawing images and finding markers in them."""
 ROUTER = """import sys
 from pathlib import Path
 from actum.runtime import serve_router, stop_on_signals

@@ -5,6 +5,7 @@ Places are given as (right, up, forward) from the middle of the actor's hips, in
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,7 @@ SHOULDER_RIGHT: Place = (0.18, 0.5, 0.0)
 SHOULDER_LEFT: Place = (-0.18, 0.5, 0.0)
 ELBOW_RIGHT: Place = (0.25, 0.15, -0.05)
 ELBOW_LEFT: Place = (-0.25, 0.15, -0.05)
+MOVED = ("right_hand", "left_hand", "right_elbow", "left_elbow")
 
 
 def at(seconds: float) -> int:
@@ -63,8 +65,9 @@ class Stance:
     z_m: float = 2.0
     heading_rad: float = 0.0
 
+    @cached_property
     def camera_from_actor(self) -> Array:
-        """Map (right, up, forward) to the camera frame."""
+        """Maps (right, up, forward) to the camera frame."""
         up = np.array([0.0, -1.0, 0.0])
         forward = np.array([np.sin(self.heading_rad), 0.0, -np.cos(self.heading_rad)])
         camera_from_actor = np.eye(4)
@@ -73,7 +76,7 @@ class Stance:
         return camera_from_actor
 
     def camera(self, place: Place) -> list[float]:
-        return geometry.apply(self.camera_from_actor(), np.array(place)).tolist()
+        return geometry.apply(self.camera_from_actor, np.array(place)).tolist()
 
 
 @dataclass(frozen=True)
@@ -94,13 +97,12 @@ class Scene:
     stance: Stance = Stance()
 
     def posture(self, seconds: float, seq: int | None = None, agent: int = 1, **fields: Any) -> Posture:
-        ego_from_camera = self._ego_from_actor(seconds) @ geometry.invert(self.stance.camera_from_actor())
+        ego_from_actor = self._ego_from_actor(seconds)
+        places = {"head": HEAD, "right_shoulder": SHOULDER_RIGHT, "left_shoulder": SHOULDER_LEFT}
+        places |= {name: getattr(self, name)(seconds) for name in MOVED}
         joints: list[list[float] | None] = [[0.0, 0.0, 0.0]] * 15
-        for name in ("right_hand", "left_hand", "right_elbow", "left_elbow"):
-            place = getattr(self, name)(seconds)
-            joints[INDEX[name]] = geometry.apply(self._ego_from_actor(seconds), np.array(place)).tolist()
-        for name, place in (("head", HEAD), ("right_shoulder", SHOULDER_RIGHT), ("left_shoulder", SHOULDER_LEFT)):
-            joints[INDEX[name]] = geometry.apply(self._ego_from_actor(seconds), np.array(place)).tolist()
+        for name, joint in zip(places, geometry.apply(ego_from_actor, np.array([*places.values()])), strict=True):
+            joints[INDEX[name]] = joint.tolist()
         message = {
             "stamp_ns": at(seconds),
             "seq": seq,
@@ -108,7 +110,7 @@ class Scene:
             "agent": agent,
             "joints_m": joints,
             "joints": joints,
-            "ego_from_camera": geometry.flat(ego_from_camera),
+            "ego_from_camera": geometry.flat(ego_from_actor @ geometry.invert(self.stance.camera_from_actor)),
             "motion": [0.0] * 5,
         }
         return Posture.model_validate(message | fields)

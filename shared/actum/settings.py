@@ -105,7 +105,6 @@ class ServiceSettings(BaseSettings):
 
     model_config = SettingsConfigDict(
         env_prefix="ACTUM_",
-        cli_parse_args=False,
         cli_kebab_case=True,
         cli_hide_none_type=True,
         cli_avoid_json=True,

@@ -65,7 +65,7 @@ def test_on_time_each_segment_has_its_event() -> None:
     assert ON_TIME[0]["result"] != ON_TIME[1]["result"]
 
 
-@settings(max_examples=30)
+@settings(max_examples=15)
 @given(delays, delays, delays)
 @example([0], [SKEW_NS], [0])
 @example([SKEW_NS], [0], [0])
@@ -75,7 +75,7 @@ def test_skew_between_keys_of_up_to_two_seconds_changes_nothing(postures_ns, obj
     assert events_after(skewed) == ON_TIME
 
 
-@settings(max_examples=20)
+@settings(max_examples=8)
 @given(delays, delays, delays)
 @example([0], [SKEW_NS], [0])
 @example([SKEW_NS], [0], [0])

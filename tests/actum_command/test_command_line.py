@@ -35,11 +35,11 @@ from actum_model_trainer.continuous.detections import Detection, Found, Stretch,
 from actum_model_trainer.training import SEARCHES
 from command_lines import invoke, refused, written
 from people import FRAME_NS
-from performers import mark, performance
+from performers import TINY, TINY_PAPER, mark, performance
 from recognisers import tiny_model
 from som_classifier.attention import PostureInput
 from som_classifier.model_loading import load_model
-from som_classifier.presets import DEFAULT, PAPER, PaperPreset
+from som_classifier.presets import DEFAULT, PAPER, PRESETS, PaperPreset
 
 
 def commands_of(group: typer.Typer, words: tuple[str, ...] = ()) -> Iterator[str]:
@@ -177,12 +177,16 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     assert '"predictions"' in report.read_text()
 
 
-def test_training_holds_the_examples_against_the_background_that_is_named(
-    examples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The search is left out: it takes most of the time, and the background counts in what is before it."""
-    monkeypatch.delitem(SEARCHES, "pyramid")
+@pytest.fixture
+def quick_training(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both presets are small ones, and the search, which takes most of the time, is left out."""
+    for preset, small in ((DEFAULT, TINY), (PAPER, TINY_PAPER)):
+        monkeypatch.setitem(PRESETS, preset.name, replace(small, name=preset.name))
+    monkeypatch.delitem(SEARCHES, DEFAULT.kind)
 
+
+@pytest.mark.usefixtures("quick_training")
+def test_training_holds_the_examples_against_the_background_that_is_named(examples: Path, tmp_path: Path) -> None:
     def trained(*background: object) -> str:
         flags = [flag for each in background for flag in ("--background", each)]
         done = invoke("train", examples, "-o", tmp_path / "m.npz", *flags)
@@ -196,10 +200,8 @@ def test_training_holds_the_examples_against_the_background_that_is_named(
     assert str(nothing) in refused("train", examples, "-o", tmp_path / "m.npz", "--background", nothing)
 
 
-def test_a_model_predicts_how_postures_go_on_only_where_that_is_asked_for(
-    examples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delitem(SEARCHES, "pyramid")
+@pytest.mark.usefixtures("quick_training")
+def test_a_model_predicts_how_postures_go_on_only_where_that_is_asked_for(examples: Path, tmp_path: Path) -> None:
     for name, flags in (("without", ()), ("with", ("--continue",))):
         done = invoke("train", examples, "-o", tmp_path / f"{name}.npz", *flags)
         assert done.exit_code == 0, done.output
@@ -207,8 +209,8 @@ def test_a_model_predicts_how_postures_go_on_only_where_that_is_asked_for(
     assert load_model(tmp_path / "with.npz").continuation is not None
 
 
-def test_examples_are_added_to_a_model_file(examples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delitem(SEARCHES, "pyramid")
+@pytest.mark.usefixtures("quick_training")
+def test_examples_are_added_to_a_model_file(examples: Path, tmp_path: Path) -> None:
     before, after = tmp_path / "before.npz", tmp_path / "after.npz"
     assert invoke("train", examples, "-o", before, "--jobs", "1").exit_code == 0
     added = invoke("train", examples, "-o", after, "--add-to", before)
@@ -246,6 +248,7 @@ def test_the_model_to_add_to_is_loaded_before_recordings(tmp_path: Path) -> None
     assert str(tmp_path / "no.npz") in said and "broken" not in said
 
 
+@pytest.mark.usefixtures("quick_training")
 def test_a_model_that_cannot_find_actions_by_itself_says_what_to_do(examples: Path, tmp_path: Path) -> None:
     model = tmp_path / "m.npz"
     assert invoke("train", examples, "-o", model, "--preset", "paper").exit_code == 0

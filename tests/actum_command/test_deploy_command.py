@@ -1,6 +1,7 @@
 """`actum deploy` says what it has written, and what cannot be."""
 
 import re
+import shutil
 import subprocess
 from datetime import timedelta
 from functools import partial
@@ -17,6 +18,19 @@ run, refusal = partial(invoke, "deploy"), partial(refused, "deploy")
 HOSTS = ("--hosts", "camera=192.168.1.5,compute=192.168.1.6")
 
 
+@pytest.fixture(scope="module")
+def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What `init` writes for both hosts, to be copied: dozens of keys take long to make."""
+    folder = tmp_path_factory.mktemp("written") / "lab"
+    printed("deploy", "init", folder, *HOSTS)
+    return folder
+
+
+@pytest.fixture
+def lab(written: Path, tmp_path: Path) -> Path:
+    return shutil.copytree(written, tmp_path / "lab")
+
+
 def test_init_says_where_each_folder_goes(tmp_path: Path) -> None:
     said = printed("deploy", "init", tmp_path, *HOSTS)
     assert f"compute: copy {tmp_path / 'compute'} to 192.168.1.6" in said
@@ -24,11 +38,10 @@ def test_init_says_where_each_folder_goes(tmp_path: Path) -> None:
     assert (tmp_path / "camera" / "compose.yml").is_file()
 
 
-def test_rotate_renews_what_init_has_written(tmp_path: Path) -> None:
-    run("init", tmp_path, *HOSTS)
-    shown = tmp_path / "camera" / "credentials" / "router" / "certificate.pem"
+def test_rotate_renews_what_init_has_written(lab: Path) -> None:
+    shown = lab / "camera" / "credentials" / "router" / "certificate.pem"
     before = shown.read_bytes()
-    said = printed("deploy", "rotate", tmp_path)
+    said = printed("deploy", "rotate", lab)
     assert "copy credentials/ and router.json5 of camera, compute, and the folders of people/" in said
     assert shown.read_bytes() != before
 
@@ -49,29 +62,26 @@ def test_revoked_credentials_get_another_name_and_keep_it_when_init_is_run_again
         assert '"viewer"' not in named and '"page.kinect0"' not in named
 
 
-def test_what_was_revoked_is_not_forgotten_with_the_file_that_says_so(tmp_path: Path) -> None:
-    run("init", tmp_path, *HOSTS)
-    (tmp_path / "deployment.json").unlink()
-    assert "delete authority/" in refusal("init", tmp_path, *HOSTS)
+def test_what_was_revoked_is_not_forgotten_with_the_file_that_says_so(lab: Path) -> None:
+    (lab / "deployment.json").unlink()
+    assert "delete authority/" in refusal("init", lab, *HOSTS)
 
 
 @pytest.mark.parametrize("name", ["router.camera", "gateway.kinect9", "page", "viewer#1", ""])
-def test_who_is_nobody_or_a_router_cannot_be_revoked(name: str, tmp_path: Path) -> None:
-    run("init", tmp_path, *HOSTS)
-    before = (tmp_path / "deployment.json").read_text()
-    said = refusal("rotate", tmp_path, "--revoke", name)
+def test_who_is_nobody_or_a_router_cannot_be_revoked(name: str, lab: Path) -> None:
+    before = (lab / "deployment.json").read_text()
+    said = refusal("rotate", lab, "--revoke", name)
     assert "page.kinect0" in said and "delete authority/" in said
-    assert (tmp_path / "deployment.json").read_text() == before
+    assert (lab / "deployment.json").read_text() == before
 
 
 @pytest.mark.parametrize("days", ["-1", "0", "1e12", "nan", "inf"])
-def test_certificates_neither_have_ended_already_nor_outlast_their_authority(days: str, tmp_path: Path) -> None:
-    run("init", tmp_path, *HOSTS)
-    before = files_of(tmp_path)
-    ended = run("rotate", tmp_path, "--days", days)
+def test_certificates_neither_have_ended_already_nor_outlast_their_authority(days: str, lab: Path) -> None:
+    before = files_of(lab)
+    ended = run("rotate", lab, "--days", days)
     assert ended.exit_code == 2
     assert "--days" in ended.stderr
-    assert files_of(tmp_path) == before
+    assert files_of(lab) == before
 
 
 def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
@@ -115,32 +125,25 @@ def damage_authority(folder: Path, how: str) -> None:
 
 @pytest.mark.parametrize("command", [("rotate", "--revoke", "viewer"), ("init", *HOSTS, "--passwords")], ids=str)
 @pytest.mark.parametrize("how", ["no key", "nothing", "no PEM", "another's key", "ended"])
-def test_without_the_authority_that_signed_nothing_is_written(
-    how: str, command: tuple[str, ...], tmp_path: Path
-) -> None:
+def test_without_the_authority_that_signed_nothing_is_written(how: str, command: tuple[str, ...], lab: Path) -> None:
     """Only `init` makes a new one, and only where nothing of the one before is left."""
-    folder = tmp_path / "lab"
-    run("init", folder, *HOSTS)
-    damage_authority(folder, how)
-    before = files_of(folder)
+    damage_authority(lab, how)
+    before = files_of(lab)
     if (how, command[0]) == ("nothing", "init"):
-        printed("deploy", command[0], folder, *command[1:])
+        printed("deploy", command[0], lab, *command[1:])
         return
-    assert "the certificate authority" in refusal(command[0], folder, *command[1:])
-    assert files_of(folder) == before
+    assert "the certificate authority" in refusal(command[0], lab, *command[1:])
+    assert files_of(lab) == before
 
 
-def test_no_certificate_outlasts_its_authority(tmp_path: Path) -> None:
-    run("init", tmp_path, *HOSTS)
+def test_no_certificate_outlasts_its_authority(lab: Path) -> None:
     old = new_authority("old", now() - timedelta(days=3600))
-    (tmp_path / "authority" / "key.pem").write_bytes(old.key_pem)
-    (tmp_path / "authority" / "ca.pem").write_bytes(old.certificate_pem)
-    assert run("rotate", tmp_path).exit_code == 0
-    shown = load_pem_x509_certificate((tmp_path / "people" / "viewer" / "certificate.pem").read_bytes())
+    (lab / "authority" / "key.pem").write_bytes(old.key_pem)
+    (lab / "authority" / "ca.pem").write_bytes(old.certificate_pem)
+    assert run("rotate", lab).exit_code == 0
+    shown = load_pem_x509_certificate((lab / "people" / "viewer" / "certificate.pem").read_bytes())
     assert shown.not_valid_after_utc <= old.certificate.not_valid_after_utc
-    assert (
-        f"valid until {old.certificate.not_valid_after_utc.date()}" in (tmp_path / "camera" / "README.md").read_text()
-    )
+    assert f"valid until {old.certificate.not_valid_after_utc.date()}" in (lab / "camera" / "README.md").read_text()
 
 
 DAMAGED = {
@@ -159,13 +162,11 @@ DAMAGED = {
 @pytest.mark.parametrize("command", [("rotate",), ("rotate", "--revoke", "viewer"), ("init", *HOSTS)], ids=str)
 @pytest.mark.parametrize("text", DAMAGED.values(), ids=DAMAGED.keys())
 def test_a_damaged_deployment_is_refused_and_nothing_is_written(
-    text: str, command: tuple[str, ...], tmp_path: Path
+    text: str, command: tuple[str, ...], lab: Path, tmp_path: Path
 ) -> None:
-    folder = tmp_path / "lab"
-    run("init", folder, *HOSTS)
-    (folder / "deployment.json").write_text(text)
+    (lab / "deployment.json").write_text(text)
     before = files_of(tmp_path)
-    assert f"{folder / 'deployment.json'} cannot be used" in refusal(command[0], folder, *command[1:])
+    assert f"{lab / 'deployment.json'} cannot be used" in refusal(command[0], lab, *command[1:])
     assert files_of(tmp_path) == before
 
 
@@ -185,13 +186,12 @@ def test_without_passwords_no_router_asks_for_earlier_ones(tmp_path: Path) -> No
     assert not [*tmp_path.rglob("users.txt"), *tmp_path.rglob("user.json5")]
 
 
-def test_while_one_writes_a_deployment_no_other_does(tmp_path: Path) -> None:
+def test_while_one_writes_a_deployment_no_other_does(lab: Path) -> None:
     """Else a revocation could be lost, and a key be another certificate's."""
-    run("init", tmp_path, *HOSTS)
-    with alone(tmp_path):
-        for command in (("rotate", tmp_path), ("init", tmp_path, *HOSTS)):
+    with alone(lab):
+        for command in (("rotate", lab), ("init", lab, *HOSTS)):
             assert "another 'actum deploy'" in refusal(*command)
-    assert run("rotate", tmp_path).exit_code == 0
+    assert run("rotate", lab).exit_code == 0
 
 
 @pytest.mark.parametrize("options", [(), ("--one-router",), ("--open",)], ids=str)

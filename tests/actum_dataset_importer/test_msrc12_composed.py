@@ -22,12 +22,18 @@ def person(folder: Path, names: list[str] = NAMES, repetitions: int = 6) -> Path
     return written(folder, {name: lifting(repetitions, aside_m=0.5 * k) for k, name in enumerate(names)})
 
 
-def takes(folder: Path) -> list[Take]:
-    return list(composed(person(folder), NAMES, "door"))
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return person(tmp_path_factory.mktemp("msrc12"))
 
 
-def test_each_person_has_two_streams_of_two_repetitions_of_every_gesture(tmp_path: Path) -> None:
-    both = takes(tmp_path)
+@pytest.fixture(scope="module")
+def both(folder: Path) -> list[Take]:
+    """The two streams of the person."""
+    return list(composed(folder, NAMES, "door"))
+
+
+def test_each_person_has_two_streams_of_two_repetitions_of_every_gesture(both: list[Take]) -> None:
     assert [(take.name, take.person) for take in both] == [("composed_p01_1", "1"), ("composed_p01_2", "1")]
     for take in both:
         labels = [mark.label for mark in take.marks if mark.label]
@@ -38,21 +44,21 @@ def test_each_person_has_two_streams_of_two_repetitions_of_every_gesture(tmp_pat
     assert len(set(ids)) == 48
 
 
-def test_the_first_and_the_last_repetition_of_a_file_are_left_out(tmp_path: Path) -> None:
-    numbers = {mark.segment_id[-2:] for take in takes(tmp_path) for mark in take.marks}
+def test_the_first_and_the_last_repetition_of_a_file_are_left_out(both: list[Take]) -> None:
+    numbers = {mark.segment_id[-2:] for take in both for mark in take.marks}
     assert numbers == {"02", "03", "04", "05"}
 
 
-def test_stamps_are_even_at_thirty_hertz(tmp_path: Path) -> None:
-    stamps_ns = np.array([frame.stamp_ns for frame in takes(tmp_path)[0].frames])
+def test_stamps_are_even_at_thirty_hertz(both: list[Take]) -> None:
+    stamps_ns = np.array([frame.stamp_ns for frame in both[0].frames])
     assert set(np.diff(stamps_ns)) <= {33_333_333, 33_333_334}
 
 
-def test_marks_hold_the_movement_and_points_its_middle(tmp_path: Path) -> None:
-    import_msrc12_composed(person(tmp_path).parent, tmp_path / "out", lambda done, total: None)
+def test_marks_hold_the_movement_and_points_its_middle(folder: Path, both: list[Take], tmp_path: Path) -> None:
+    import_msrc12_composed(folder.parent, tmp_path / "out", lambda done, total: None)
     recording = Recording(tmp_path / "out" / "composed_p01_1.mcap")
     points_ns = recording.action_points_ns
-    marks = takes(tmp_path)[0].marks
+    marks = both[0].marks
     for start, end in zip(marks[::2], marks[1::2], strict=True):
         assert start.stamp_ns is not None and end.stamp_ns is not None
         assert (end.stamp_ns - start.stamp_ns) / S == pytest.approx(LIFT_S, abs=0.6)
@@ -60,16 +66,16 @@ def test_marks_hold_the_movement_and_points_its_middle(tmp_path: Path) -> None:
         assert points_ns[start.segment_id] == pytest.approx(middle_ns, abs=0.2 * S)
 
 
-def test_a_person_stays_in_place_and_never_jumps(tmp_path: Path) -> None:
-    for take in takes(tmp_path):
+def test_a_person_stays_in_place_and_never_jumps(both: list[Take]) -> None:
+    for take in both:
         joints = np.array([frame.agents[0].joints for frame in take.frames])
         assert np.ptp(joints[:, INDEX["torso"]], axis=0).max() < 0.001
         fastest_m = np.linalg.norm(np.diff(joints, axis=0), axis=2).max()
         assert fastest_m < 1.1 * 0.4 * 2 * np.pi / LIFT_S / 30
 
 
-def test_the_same_set_makes_the_same_streams(tmp_path: Path) -> None:
-    assert takes(tmp_path) == takes(tmp_path)
+def test_the_same_set_makes_the_same_streams(folder: Path, both: list[Take]) -> None:
+    assert list(composed(folder, NAMES, "door")) == both
 
 
 def test_one_gesture_alone_cannot_be_mixed(tmp_path: Path) -> None:

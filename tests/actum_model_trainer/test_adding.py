@@ -64,6 +64,12 @@ def with_swings() -> PyramidModel:
     return model
 
 
+@cache
+def trained_anew() -> Model:
+    """A model that was trained on the old and the new examples at once."""
+    return train_to_spot([*old_samples(), *new_samples()], taught().streams, TINY)
+
+
 def named(model: Model) -> list[str]:
     """What a model calls each action of somebody else's scene."""
     of = scene(seed=9)
@@ -209,7 +215,7 @@ def test_an_update_trains_anew_where_counterexamples_are_gone() -> None:
     before = train_to_spot(old_samples(), [*streams_without_swings(), *swings_said_to_be_none()], TINY)
     every = [*old_samples(), *new_samples()]
     after = update(before, every, taught().streams, TINY, kept=before.kept)
-    assert after.id == train_to_spot(every, taught().streams, TINY).id
+    assert after.id == trained_anew().id
 
 
 def test_an_update_adds_where_background_and_counterexamples_are_as_they_were() -> None:
@@ -234,6 +240,7 @@ def test_actions_can_be_added_after_an_update_of_the_others() -> None:
     assert named(added) == done() and found(added) == done()
 
 
+@cache
 def updated_without_kept() -> PyramidModel:
     """A model of a file that kept nothing, updated: it still finds actions."""
     updated = update(without_swings(), old_samples(), streams_without_swings(), TINY, seed=1, kept=NOTHING_KEPT)
@@ -244,7 +251,7 @@ def updated_without_kept() -> PyramidModel:
 def test_an_update_does_not_lose_the_search_where_nothing_of_it_is_kept() -> None:
     updated, every = updated_without_kept(), [*old_samples(), *new_samples()]
     after = update(updated, every, taught().streams, TINY, kept=updated.kept)
-    assert after.id == train_to_spot(every, taught().streams, TINY).id
+    assert after.id == trained_anew().id
     assert after.spotting is not None
 
 
@@ -266,7 +273,7 @@ def test_an_update_treats_damaged_arrays_as_none(name: str) -> None:
     same = update(before, old_samples(), streams_without_swings(), TINY, seed=1, kept=damaged)
     assert same.id == updated_without_kept().id
     more = update(before, every, taught().streams, TINY, kept=damaged)
-    assert more.id == train_to_spot(every, taught().streams, TINY).id
+    assert more.id == trained_anew().id
 
 
 def slow_and_fast(actions: Sequence[str], seed: int, height: float) -> Scene:

@@ -15,7 +15,7 @@ from actum.runtime.credentials import USERS
 from actum.runtime.session import secret_config
 from actum.settings import ServiceSettings
 from actum_deployer.writing import write_deployment
-from deployments import Deployed, deployed
+from deployments import BARE_ROUTER, Deployed, deployed
 from empty_messages import mark, skeleton
 from live import PATIENCE_S, wait_until
 from third_session import Third, received
@@ -28,7 +28,7 @@ SEGMENT = keys.key(keys.SEGMENT, "kinect0")
 
 @pytest.fixture(params=[False, True], ids=["certificates", "passwords"])
 def running(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Deployed]:
-    with deployed(tmp_path, passwords=request.param) as made:
+    with deployed(tmp_path, BARE_ROUTER, passwords=request.param) as made:
         yield made
 
 
@@ -98,7 +98,7 @@ def test_a_services_are_revoked_as_peoples_are(running: Deployed) -> None:
 
 
 def test_what_was_revoked_twice_or_by_init_again_stays_revoked(tmp_path: Path) -> None:
-    with deployed(tmp_path) as running:
+    with deployed(tmp_path, BARE_ROUTER) as running:
         first = stolen(running, "viewer")
         revoke(running, "viewer")
         second = running.settings("viewer", "compute")
@@ -118,7 +118,7 @@ def test_what_was_revoked_twice_or_by_init_again_stays_revoked(tmp_path: Path) -
 
 
 def test_a_router_goes_on_with_a_file_that_is_half_copied(tmp_path: Path) -> None:
-    with deployed(tmp_path) as running:
+    with deployed(tmp_path, BARE_ROUTER) as running:
         file = running.root / "compute" / "router.json5"
         whole = file.read_bytes()
         [router] = [each for each in running.running if each.log.name.startswith("router-compute")]
@@ -132,7 +132,7 @@ def test_a_router_goes_on_with_a_file_that_is_half_copied(tmp_path: Path) -> Non
 
 
 def test_a_router_takes_up_a_list_of_users_that_is_written_after_its_certificate(tmp_path: Path) -> None:
-    with deployed(tmp_path, passwords=True) as running:
+    with deployed(tmp_path, BARE_ROUTER, passwords=True) as running:
         users = running.root / "compute" / "credentials" / "router" / USERS
         [router] = [each for each in running.running if each.log.name.startswith("router-compute")]
         with running.client("viewer", "compute"):

@@ -12,7 +12,7 @@ from actum_command.doctor.diagnosis import EXPECTED
 from actum_command.simulated_model import SIMULATED_MODEL
 from deployments import Deployed, deployed
 from events import event
-from live import PATIENCE_S, Running, collect, wait_until
+from live import FEW_IMAGES_HZ, PATIENCE_S, Running, collect, wait_until
 
 pytestmark = [pytest.mark.system, pytest.mark.timeout(300)]
 ACTIONS = 5
@@ -119,7 +119,7 @@ def test_one_process_of_each_service_recognises_for_all_of_its_sensors_and_may_s
         running.start("som_classifier", "compute", "--model", str(SIMULATED_MODEL), sensor="left,right")
         for host, sensor in (("camera", "left"), ("camera-right", "right")):
             running.start("marker_tracker", host, sensor=sensor)
-            running.start("scene_simulator", host, sensor=sensor)
+            running.start("scene_simulator", host, "--image-hz", FEW_IMAGES_HZ, sensor=sensor)
         with running.client("viewer", "compute", "left") as viewer:
             for sensor in ("left", "right"):
                 events = viewer.listen(keys.pattern(keys.EVENT, sensor))

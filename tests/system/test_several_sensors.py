@@ -12,7 +12,7 @@ from actum.node import Counters
 from actum.runtime import Client
 from actum.runtime.serving import TAKEN
 from actum_command.processes import SERVICES
-from live import PATIENCE_S, System, collect, described, wait_until
+from live import FEW_IMAGES_HZ, PATIENCE_S, System, collect, described, wait_until
 from people import reaches
 from recognisers import tiny_model
 from som_classifier.model_loading import WatchedModel, load_model
@@ -73,6 +73,7 @@ def processes_that_serve(client: Client) -> dict[str, set[str]]:
 
 
 def test_up_recognises_what_is_done_before_each_sensor_with_one_process_of_each_service(running: System) -> None:
+    running.variables["ACTUM_IMAGE_HZ"] = FEW_IMAGES_HZ
     up = running.start("actum_command", "up", "--sensors", ",".join(SENSORS))
     with running.client("left") as left, running.client("right") as right:
         served: list[dict[str, set[str]]] = []
