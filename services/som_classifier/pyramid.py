@@ -7,7 +7,6 @@ of two prefix sums, wherever the summation began.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,18 +37,6 @@ def running_sums(activities: Floats) -> Sums:
     for row, before, after in zip(quantised(activities), sums, sums[1:], strict=False):
         np.add(before, row, out=after)  # row by row: np.cumsum takes several times as long
     return sums
-
-
-class Prefix(NamedTuple):
-    """Sums over all frames up to an instant between two frames.
-
-    Attributes:
-        sums: of quantised activities modulo 2³², (units,) each: of the actor as seen and, where kept, mirrored.
-        travelled_um: of the displacements of all body parts, micrometres.
-    """
-
-    sums: Sequence[Sums]
-    travelled_um: int
 
 
 @dataclass(frozen=True, eq=False)

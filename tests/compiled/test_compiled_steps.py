@@ -138,9 +138,7 @@ def test_a_frame_adds_the_same_to_all_sums(seed: int) -> None:
         assert compiled.kinematics is not None and plain.kinematics is not None
         of_both = [(each.kinematics.posture, each.kinematics.velocity) for each in (compiled, plain) if each.kinematics]
         np.testing.assert_allclose(*of_both, rtol=0, atol=ROUNDING_M)
-        added = [
-            np.stack(frame.activity.after.sums) - np.stack(frame.activity.before.sums) for frame in (compiled, plain)
-        ]
+        added = [frame.activity.after - frame.activity.before for frame in (compiled, plain)]
         assert np.abs(added[0].astype(np.int64) - added[1].astype(np.int64)).max() <= 1
         totals = [frame.activity.totals_after - frame.activity.totals_before for frame in (compiled, plain)]
         assert np.abs(totals[0] - totals[1]).max() <= 1
@@ -303,6 +301,20 @@ def pooled_by(spans: list[list[int]], frames: int = 2) -> None:
     steps.pooled(sums, travelled_um, np.array(spans), *cells, 1.0, np.empty(3, np.float32))
 
 
+def pool_windows(rows: list[int], firsts: list[int]) -> None:
+    """Pool windows of frames before which are these rows of a run of three, as one cell of three units."""
+    run = np.zeros((3, 2, 3), np.uint32), np.zeros((3, 40), np.int64)
+    cells = np.array([0.0, 1.0]), np.array([0], np.int32), np.array([1], np.int32)
+    steps.pooled_windows([(run, row) for row in rows], firsts, True, 1.0, 1.0, *cells, 1.0, np.empty(3, np.float32))
+
+
+def add_frame(row: int) -> None:
+    """Add a frame to the sums in a row of a run of three."""
+    activities, frame = np.zeros((2, 4), np.float32), (ZEROS, ZEROS, ZEROS, ZEROS, ZEROS, ZEROS)
+    sums, totals = np.zeros((3, 2, 4), np.uint32), np.zeros((3, 40), np.int64)
+    steps.added(activities, np.ones(4, np.float32), 1.0, *frame, 1e-9, sums, totals, row)
+
+
 @pytest.mark.parametrize(
     "call",
     [
@@ -333,7 +345,13 @@ def pooled_by(spans: list[list[int]], frames: int = 2) -> None:
         lambda: compare(np.zeros((9, 3)), np.zeros((1, 3)), np.empty(72), np.empty(27, np.bool_)),
         lambda: compare(np.zeros((9, 3)), np.zeros((2, 3)), np.empty(71), np.empty(27, np.bool_)),
         lambda: compare(np.zeros((9, 3)), np.zeros((2, 3)), np.empty(72), np.empty(26, np.bool_)),
-        lambda: steps.pooled_windows([], [0], [False], ZEROS, b"", b"", 1.0, np.empty(3, np.float32)),
+        lambda: pool_windows([], [0]),
+        lambda: pool_windows([0, 1], [2]),
+        lambda: pool_windows([0, 1], [-1]),
+        lambda: pool_windows([0, 2], [0]),
+        lambda: pool_windows([-1], [0]),
+        lambda: add_frame(row=2),
+        lambda: add_frame(row=-1),
     ],
 )
 def test_arrays_that_are_too_short_are_refused_before_anything_is_read(call: Callable[[], object]) -> None:
