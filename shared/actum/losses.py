@@ -3,6 +3,7 @@
 from bisect import bisect_left, bisect_right
 from collections import deque
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from typing import Generic, Protocol, TypeVar
 
 from actum.node import SECOND_NS
@@ -83,6 +84,12 @@ class StreamBuffer(Generic[S]):
         if end_ns >= self.newest_ns:
             return self._samples[first:]
         return self._samples[first : bisect_right(self._stamps_ns, end_ns, lo=first)]
+
+    def is_dense(self, start_ns: int, end_ns: int) -> bool:
+        """Tell whether nowhere in a segment samples are further apart than a lost part that hardly matters."""
+        first = bisect_left(self._stamps_ns, start_ns)
+        stamps_ns = [start_ns, *self._stamps_ns[first : bisect_right(self._stamps_ns, end_ns, lo=first)], end_ns]
+        return all(then_ns - before_ns <= LOST_NS for before_ns, then_ns in pairwise(stamps_ns))
 
     def mark_answered(self, start_ns: int, end_ns: int) -> None:
         """Remember that a segment has been answered, so that its later samples are too late."""
