@@ -643,6 +643,36 @@ static void apply(const double *transform, const double *joints, double *out)
                 + transform[4 * row + 3];
 }
 
+/* Whether this is a list of so many joints, each None or a list of three floats, and nothing else. */
+static int are_plain_joints(PyObject *joints)
+{
+    if (!PyList_CheckExact(joints) || PyList_Size(joints) != JOINTS)
+        return 0;
+    for (int joint = 0; joint < JOINTS; joint++) {
+        PyObject *point = PyList_GetItem(joints, joint);
+        if (point == Py_None)
+            continue;
+        if (!PyList_CheckExact(point) || PyList_Size(point) != 3)
+            return 0;
+        for (int i = 0; i < 3; i++)
+            if (!PyFloat_CheckExact(PyList_GetItem(point, i)))
+                return 0;
+    }
+    return 1;
+}
+
+PyDoc_STRVAR(plain_joints_or_doc,
+    "plain_joints_or(value, validate)\n--\n\n"
+    "Return a list of joints, each None or a list of three floats, as it is; what another value is, `validate` says.");
+static PyObject *plain_joints_or(PyObject *module, PyObject *const *args, Py_ssize_t count)
+{
+    if (count != 2) {
+        PyErr_SetString(PyExc_TypeError, "a value and what validates it are needed");
+        return NULL;
+    }
+    return are_plain_joints(args[0]) ? Py_NewRef(args[0]) : PyObject_CallFunctionObjArgs(args[1], args[0], NULL);
+}
+
 /* Read a message's joints, a list of fifteen lists of three numbers, NaN where one is unknown (None). Return how many
    are unknown, -1 where an error is set. */
 static int read_joints(PyObject *joints, double *out)
@@ -1505,6 +1535,7 @@ static PyMethodDef methods[] = {
     {"exponents", exponents, METH_VARARGS, exponents_doc},
     {"interpolated", interpolated, METH_VARARGS, interpolated_doc},
     {"left_arm_acts", left_arm_acts, METH_VARARGS, left_arm_acts_doc},
+    {"plain_joints_or", (PyCFunction)(void (*)(void))plain_joints_or, METH_FASTCALL, plain_joints_or_doc},
     {"pooled", pooled, METH_VARARGS, pooled_doc},
     {"pooled_windows", pooled_windows, METH_VARARGS, pooled_windows_doc},
     {"posture", posture, METH_VARARGS, posture_doc},
