@@ -173,7 +173,7 @@ class Pyramid:
     @cached_property
     def _borders(self) -> Floats:
         """Where cells begin or end, each once, rising, shape (borders,)."""
-        return np.unique(self._spans)
+        return np.array(sorted({border for span in self._spans for border in span}))
 
     @cached_property
     def _begins(self) -> Indices:
