@@ -36,7 +36,7 @@ _MILLIONTHS = 1e6
 """Steps per unit in which logarithms are added up."""
 
 
-ROWS = 9
+ROWS = 33
 """Rows of sums in one array: more would keep longer what nobody needs any more, fewer would repeat more of them."""
 
 
