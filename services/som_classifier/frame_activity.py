@@ -122,7 +122,7 @@ class FrameEncoder:
         posture, (sums, totals), row = kinematics.posture, self._run, self._row
         activities = self._first.frame_activities(posture, kinematics.velocity)
         winners: list[int] = activities[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
-        log_errors = self._first.log_errors(np.stack([posture, mirrored(posture)]), winners)
+        log_errors = self._first.log_errors(np.array([posture, mirrored(posture)]), winners)
         np.add(sums[row], quantised(activities), out=sums[row + 1])
         added = np.rint(motion * UM_PER_M), limb_moments(posture).ravel(), [len(frame.missing)]
         in_all = np.concatenate([*added, np.rint(log_errors * _MILLIONTHS)]).astype(np.int64)

@@ -21,6 +21,9 @@ SCALE = float(2**19)
 MOST_FRAMES = 2**32 // 2**19 - 1
 """Longest run of frames of activity 1 whose sum stays below 2³²; longer segments are summed in runs of this length."""
 
+MOST_SIGNED = 2**12
+"""Frames from which on a sum may need all 32 bits; those of fewer are converted as signed numbers, which is faster."""
+
 
 def quantised(activities: Floats) -> Sums:
     """Return activities within [0, 1] as whole quantisation steps, in the same shape."""
@@ -75,6 +78,8 @@ class PrefixSums:
         return summed
 
     def _sums(self, at: Sequence[int]) -> Sums:
+        if isinstance(self.sums, np.ndarray):
+            return self.sums.take(at, axis=0)
         return np.concatenate([self.sums[k] for k in at]).reshape(len(at), -1)
 
     def instants_of(self, progress: Sequence[float] | Floats) -> Floats:
@@ -142,10 +147,12 @@ class Pyramid:
 
     def _vector(self, segment: PrefixSums) -> NDArray[np.float32]:
         at = segment.instants_of(self._borders)
-        below = [min(int(instant), len(segment) - 1) for instant in at.tolist()]
-        sums, growth = (
-            segment.since_start([*below, *[k + 1 for k in below]]).astype(np.float32).reshape(2, len(below), -1)
-        )
+        last = len(segment) - 1
+        below = [min(int(instant), last) for instant in at.tolist()]
+        whole = segment.since_start([*below, *[k + 1 for k in below]])
+        if len(segment) < MOST_SIGNED:
+            whole = whole.view(np.int32)
+        sums, growth = whole.astype(np.float32).reshape(2, len(below), -1)
         growth -= sums
         growth *= (at - below).astype(np.float32)[:, None]
         sums += growth
