@@ -4,13 +4,14 @@ import math
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
 import pytest
 from benchmarks.rig.numpy_alone import numpy_alone
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import Field, TypeAdapter, ValidationError
 
 from action_fusion.intake.buffers import Hands
 from action_fusion.tracks.comotion import Comotion, comotion
@@ -22,6 +23,7 @@ from actum.arrays import Array, Mask, joints_to_array
 from actum.core import steps
 from actum.geometry import DegenerateError
 from actum.messages import Joint, Posture
+from actum.messages.base import Joints
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from people import FRAME_NS, STANDING, skeleton
@@ -95,6 +97,26 @@ def test_postures_agree(seed: int, lacking: float, up: list[float] | None) -> No
 
 
 NUMBERS = st.sampled_from([0.0, -0.5, 0.3, 1e-300, 99.0, 101.0, -1e300, math.inf, math.nan])
+
+
+PLAIN = TypeAdapter(Annotated[list[Joint], Field(min_length=15, max_length=15)], config={"strict": True})
+POINTS = st.none() | st.lists(NUMBERS | st.sampled_from([1, True, "0.5", None]), min_size=2, max_size=4)
+
+
+def validated(adapter: TypeAdapter[list[Joint]], value: object) -> str | None:
+    """What is valid, or None where nothing is; as text, in which NaN equals itself and 1.0 is not 1."""
+    try:
+        return repr(adapter.validate_python(value))
+    except ValidationError:
+        return None
+
+
+PLAIN_POINTS = st.lists(st.none() | st.lists(NUMBERS, min_size=3, max_size=3), min_size=15, max_size=15)
+
+
+@given(PLAIN_POINTS | st.lists(POINTS, min_size=14, max_size=16) | st.tuples(*[POINTS] * 15))
+def test_the_same_joints_are_valid_and_of_the_same_value(joints: object) -> None:
+    assert validated(TypeAdapter(Joints, config={"strict": True}), joints) == validated(PLAIN, joints)
 
 
 @pytest.mark.filterwarnings("ignore:invalid value")
