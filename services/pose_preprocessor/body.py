@@ -41,7 +41,7 @@ def body_of(joints: Array) -> Body:
     Raises:
         DegenerateError: joints coincide, so that the frame is not defined.
     """
-    metric_and_scaled = np.stack([joints, standard_body.scaled(joints)])
+    metric_and_scaled = np.array([joints, standard_body.scaled(joints)])
     ego_from_camera = geometry.ego_from_camera(metric_and_scaled)
     metric_ego, scaled_ego = geometry.apply(ego_from_camera, metric_and_scaled)
     return Body(metric_and_scaled[1], ego_from_camera[0], metric_ego, scaled_ego)

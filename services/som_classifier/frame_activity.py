@@ -4,6 +4,7 @@ A sum over a segment is the difference of two prefix sums, so that its cost does
 """
 
 from collections.abc import Sequence
+from itertools import groupby
 from types import ModuleType
 from typing import NamedTuple
 
@@ -16,9 +17,9 @@ from actum.skeletons import JOINTS
 from som_classifier.attention import PART_NAMES
 from som_classifier.first_layer import MIRRORED, SMALLEST_ERROR2, FirstMaps
 from som_classifier.frames import Frame
-from som_classifier.handedness import COMPONENTS, LIMBS, MOMENTS, left_arm_acts, limb_moments, mirrored
+from som_classifier.handedness import ARMS, COMPONENTS, LIMBS, MOMENTS, left_arm_acts, limb_moments, mirrored
 from som_classifier.kinematics import Kinematics
-from som_classifier.pyramid import MOST_FRAMES, SCALE, Prefix, PrefixSums, Pyramid, Sums, quantised
+from som_classifier.pyramid import MOST_FRAMES, SCALE, PrefixSums, Pyramid, Sums, quantised
 
 Totals = NDArray[np.int64]
 """Prefix sums of whole numbers: the displacement of each part (5; µm), the moments of the limbs (4 * 8), the number of
@@ -35,22 +36,65 @@ _MILLIONTHS = 1e6
 """Steps per unit in which logarithms are added up."""
 
 
-class FrameActivity(NamedTuple):
-    """The prefix sums before and after a frame, and its winners on the posture map.
+ROWS = 33
+"""Rows of sums in one array: more would keep longer what nobody needs any more, fewer would repeat more of them."""
+
+
+class Run(NamedTuple):
+    """Sums over all frames up to some instants, one after the other.
 
     Attributes:
-        before: sums of activities over all earlier frames, of the actor as seen and mirrored.
-        after: the same with this frame.
-        totals_before: the other sums over all earlier frames.
-        totals_after: the same with this frame.
+        sums: (instants, 2, units), of quantised activities modulo 2³², of the actor as seen and mirrored.
+        totals: (instants, totals), the other sums.
+    """
+
+    sums: Sums
+    totals: Totals
+
+    @classmethod
+    def beginning(cls, sums: Sums, totals: Totals) -> "Run":
+        """Return a run with room for `ROWS` instants, of which the first has these sums."""
+        run = cls(np.empty((ROWS, *sums.shape), sums.dtype), np.empty((ROWS, *totals.shape), totals.dtype))
+        run.sums[0], run.totals[0] = sums, totals
+        return run
+
+
+class FrameActivity(NamedTuple):
+    """The sums before and after a frame, and its winners on the posture map.
+
+    Attributes:
+        run: holds the sums.
+        row: of the instant before the frame; that after it is the next.
         winners: the posture map's winner for the actor as seen and mirrored.
     """
 
-    before: Prefix
-    after: Prefix
-    totals_before: Totals
-    totals_after: Totals
+    run: Run
+    row: int
     winners: tuple[int, int]
+
+    @property
+    def before(self) -> Sums:
+        """The sums of activities over all earlier frames, (2, units)."""
+        before: Sums = self.run.sums[self.row]
+        return before
+
+    @property
+    def after(self) -> Sums:
+        """The same with this frame."""
+        after: Sums = self.run.sums[self.row + 1]
+        return after
+
+    @property
+    def totals_before(self) -> Totals:
+        """The other sums over all earlier frames."""
+        before: Totals = self.run.totals[self.row]
+        return before
+
+    @property
+    def totals_after(self) -> Totals:
+        """The same with this frame."""
+        after: Totals = self.run.totals[self.row + 1]
+        return after
 
 
 class FrameEncoder:
@@ -58,73 +102,76 @@ class FrameEncoder:
 
     def __init__(self, first: FirstMaps) -> None:
         self._first = first
-        self._sums: Sums = np.zeros((2, first.units), np.uint32)
-        self._prefix = Prefix(tuple(self._sums), 0)
-        self._totals: Totals = np.zeros(_LOG_ERRORS.stop, np.int64)
+        self._run = Run.beginning(np.zeros((2, first.units), np.uint32), np.zeros(_LOG_ERRORS.stop, np.int64))
+        self._row = 0
 
     def encode(self, frame: Frame) -> FrameActivity:
         """Add a valid frame and return its activity."""
         assert frame.kinematics is not None and frame.motion is not None
-        before, totals_before = self._prefix, self._totals
+        if self._row == ROWS - 1:
+            self._run, self._row = Run.beginning(self._run.sums[-1], self._run.totals[-1]), 0
         if steps is None or frame.missing or self._first.postures.dtype != np.float32:
-            *winners, moved_um = self._add(frame, frame.kinematics, frame.motion)
+            winners = self._add(frame, frame.kinematics, frame.motion)
         else:
-            *winners, moved_um = self._add_compiled(steps, frame.kinematics, frame.motion)
-        self._prefix = Prefix((self._sums[0], self._sums[1]), before.travelled_um + moved_um)
-        return FrameActivity(before, self._prefix, totals_before, self._totals, (winners[0], winners[1]))
+            winners = self._add_compiled(steps, frame.kinematics, frame.motion)
+        self._row += 1
+        return FrameActivity(self._run, self._row - 1, winners)
 
-    def _add(self, frame: Frame, kinematics: Kinematics, motion: Array) -> tuple[int, int, int]:
-        """Add a frame to the sums; return its winners on the posture map, as seen and mirrored, and how far it moved.
-
-        That is the sum of the displacements of all parts, in micrometres.
-        """
-        posture = kinematics.posture
+    def _add(self, frame: Frame, kinematics: Kinematics, motion: Array) -> tuple[int, int]:
+        """Write the sums with a frame; return its winners on the posture map, as seen and mirrored."""
+        posture, (sums, totals), row = kinematics.posture, self._run, self._row
         activities = self._first.frame_activities(posture, kinematics.velocity)
         winners: list[int] = activities[:, : len(self._first.postures.weights)].argmax(axis=1).tolist()
-        log_errors = self._first.log_errors(np.stack([posture, mirrored(posture)]), winners)
-        self._sums = self._sums + quantised(activities)
-        moved_um = np.rint(motion * UM_PER_M)
-        added = moved_um, limb_moments(posture).ravel(), [len(frame.missing)], np.rint(log_errors * _MILLIONTHS)
-        self._totals = self._totals + np.concatenate(added).astype(np.int64)
-        return winners[0], winners[1], int(moved_um.sum())
+        log_errors = self._first.log_errors(np.array([posture, mirrored(posture)]), winners)
+        np.add(sums[row], quantised(activities), out=sums[row + 1])
+        added = np.rint(motion * UM_PER_M), limb_moments(posture).ravel(), [len(frame.missing)]
+        in_all = np.concatenate([*added, np.rint(log_errors * _MILLIONTHS)]).astype(np.int64)
+        np.add(totals[row], in_all, out=totals[row + 1])
+        return winners[0], winners[1]
 
-    def _add_compiled(self, steps: ModuleType, kinematics: Kinematics, motion: Array) -> tuple[int, int, int]:
-        """Add a frame whose joints are all known, by compiled steps; return the same as `_add`."""
+    def _add_compiled(self, steps: ModuleType, kinematics: Kinematics, motion: Array) -> tuple[int, int]:
+        """Write the sums with a frame whose joints are all known, by compiled steps; return the same as `_add`."""
         posture, velocity = np.ascontiguousarray(kinematics.posture), np.ascontiguousarray(kinematics.velocity)
-        before, totals_before = self._sums, self._totals
         activities = self._first.unnormalised_activities(steps, posture, velocity)
-        self._sums, self._totals = np.empty_like(before), np.empty_like(totals_before)
-        added: tuple[int, int, int] = steps.added(
-            activities, self._first.shares, SCALE, before, self._sums, np.ascontiguousarray(motion), posture, *MIRRORED,
-            self._first.posture_weights, _LIMB_COMPONENTS, SMALLEST_ERROR2, totals_before, self._totals,
+        winners: tuple[int, int] = steps.added(
+            activities, self._first.shares, SCALE, np.ascontiguousarray(motion), posture, *MIRRORED,
+            self._first.posture_weights, _LIMB_COMPONENTS, SMALLEST_ERROR2, *self._run, self._row,
         )  # fmt: skip
-        return added
+        return winners
 
 
 def segment_sums(frames: Sequence[FrameActivity], in_mirror: bool) -> PrefixSums:
     """Return a segment's prefix sums of activity, of the actor as seen or mirrored."""
-    prefixes, side = [frames[0].before, *[frame.after for frame in frames]], int(in_mirror)
-    return PrefixSums([at.sums[side] for at in prefixes], np.array([at.travelled_um for at in prefixes]))
+    side, sums, totals = int(in_mirror), [frames[0].before[None]], [frames[0].totals_before[None]]
+    for _, together in groupby(frames, key=lambda frame: id(frame.run)):
+        (run, row, _), *others = together
+        rows = slice(row + 1, row + 2 + len(others))
+        sums.append(run.sums[rows])
+        totals.append(run.totals[rows])
+    travelled_um: NDArray[np.int64] = np.concatenate(totals)[:, _PARTS].sum(axis=1)
+    return PrefixSums(np.concatenate([each[:, side] for each in sums]), travelled_um)
 
 
 def pooled_windows(
-    pyramid: Pyramid, frames: list[FrameActivity], firsts: Sequence[int], in_mirror: Sequence[bool]
-) -> list[NDArray[np.float32]]:
-    """Return the pyramid vectors (inputs,) of windows that end with the last frame.
+    pyramid: Pyramid, frames: list[FrameActivity], firsts: Sequence[int], mirrors: bool
+) -> NDArray[np.float32]:
+    """Return the pyramid vectors of windows that end with the last frame, (windows, inputs).
 
     Args:
         pyramid: by which they are pooled.
         frames: of the longest window.
         firsts: the index of each window's first frame.
-        in_mirror: whether each window is read as its mirror image.
+        mirrors: whether windows in which the left arm acts are read as their mirror image.
     """
-    if steps is None or len(frames) > MOST_FRAMES:
-        sums = {side: segment_sums(frames, side) for side in set(in_mirror)}
-        windows = [sums[side].between(first, len(frames)) for side, first in zip(in_mirror, firsts, strict=True)]
-        return list(map(pyramid.vector, windows))
-    vectors = np.empty((len(firsts), pyramid.cells * len(frames[0].before.sums[0])), np.float32)
-    steps.pooled_windows(frames, list(firsts), list(in_mirror), *pyramid.compiled, SCALE, vectors)
-    return list(vectors)
+    vectors = np.empty((len(firsts), pyramid.cells * frames[0].before.shape[1]), np.float32)
+    if steps is not None and len(frames) <= MOST_FRAMES:
+        steps.pooled_windows(frames, list(firsts), mirrors, *ARMS, *pyramid.compiled, SCALE, vectors)
+        return vectors
+    in_mirror = [mirrors and left_handed((frames[first], frames[-1])) for first in firsts]
+    sums = {side: segment_sums(frames, side) for side in set(in_mirror)}
+    for vector, side, first in zip(vectors, in_mirror, firsts, strict=True):
+        vector[:] = pyramid.vector(sums[side].between(first, len(frames)))
+    return vectors
 
 
 def left_handed(frames: Sequence[FrameActivity]) -> bool:

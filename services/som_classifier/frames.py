@@ -18,7 +18,7 @@ _TORSO = INDEX["torso"]
 _SIZE = 3 * len(INDEX)
 
 
-@dataclass
+@dataclass(slots=True)
 class Frame:
     """One posture as the recogniser needs it. Arrays are None where the frame is not valid.
 

@@ -39,6 +39,8 @@ _JITTER_MM = 20.0
 """Added to the spreads of both arms before they are compared, so that noise makes no resting arm the acting one."""
 _FACTOR = 1.65
 """How many times the other arm's spread the acting arm's must be; below, both act."""
+ARMS = (_JITTER_MM, _FACTOR)
+"""By what the compiled steps tell which arm acts."""
 
 OPPOSITE = np.array([INDEX[name.replace("left_", "R_").replace("right_", "left_").replace("R_", "right_")]
                      for name in JOINTS])  # fmt: skip
@@ -117,7 +119,7 @@ def left_arm_acts(before: Integers, after: Integers, first: int) -> bool:
         first: an index.
     """
     if steps is not None:
-        acts: bool = steps.left_arm_acts(before, after, first, _JITTER_MM, _FACTOR)
+        acts: bool = steps.left_arm_acts(before, after, first, *ARMS)
         return acts
     moments = (after - before)[first : first + LIMBS * MOMENTS]
     return LimbSpreads.of(moments.reshape(LIMBS, MOMENTS)).left_handed

@@ -7,7 +7,6 @@ of two prefix sums, wherever the summation began.
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,9 @@ SCALE = float(2**19)
 """Quantisation steps per unit of activity; a finer step would leave fewer frames before a sum wraps around."""
 MOST_FRAMES = 2**32 // 2**19 - 1
 """Longest run of frames of activity 1 whose sum stays below 2³²; longer segments are summed in runs of this length."""
+
+MOST_SIGNED = 2**12
+"""Frames from which on a sum may need all 32 bits; those of fewer are converted as signed numbers, which is faster."""
 
 
 def quantised(activities: Floats) -> Sums:
@@ -38,18 +40,6 @@ def running_sums(activities: Floats) -> Sums:
     for row, before, after in zip(quantised(activities), sums, sums[1:], strict=False):
         np.add(before, row, out=after)  # row by row: np.cumsum takes several times as long
     return sums
-
-
-class Prefix(NamedTuple):
-    """Sums over all frames up to an instant between two frames.
-
-    Attributes:
-        sums: of quantised activities modulo 2³², (units,) each: of the actor as seen and, where kept, mirrored.
-        travelled_um: of the displacements of all body parts, micrometres.
-    """
-
-    sums: Sequence[Sums]
-    travelled_um: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +78,8 @@ class PrefixSums:
         return summed
 
     def _sums(self, at: Sequence[int]) -> Sums:
+        if isinstance(self.sums, np.ndarray):
+            return self.sums.take(at, axis=0)
         return np.concatenate([self.sums[k] for k in at]).reshape(len(at), -1)
 
     def instants_of(self, progress: Sequence[float] | Floats) -> Floats:
@@ -155,10 +147,12 @@ class Pyramid:
 
     def _vector(self, segment: PrefixSums) -> NDArray[np.float32]:
         at = segment.instants_of(self._borders)
-        below = [min(int(instant), len(segment) - 1) for instant in at.tolist()]
-        sums, growth = (
-            segment.since_start([*below, *[k + 1 for k in below]]).astype(np.float32).reshape(2, len(below), -1)
-        )
+        last = len(segment) - 1
+        below = [min(int(instant), last) for instant in at.tolist()]
+        whole = segment.since_start([*below, *[k + 1 for k in below]])
+        if len(segment) < MOST_SIGNED:
+            whole = whole.view(np.int32)
+        sums, growth = whole.astype(np.float32).reshape(2, len(below), -1)
         growth -= sums
         growth *= (at - below).astype(np.float32)[:, None]
         sums += growth
@@ -186,7 +180,7 @@ class Pyramid:
     @cached_property
     def _borders(self) -> Floats:
         """Where cells begin or end, each once, rising, shape (borders,)."""
-        return np.unique(self._spans)
+        return np.array(sorted({border for span in self._spans for border in span}))
 
     @cached_property
     def _begins(self) -> Indices:

@@ -178,16 +178,14 @@ class PyramidModel(Model):
         pool, learned = PoolingOnce(self.pooled), SpottingModel(self.heads, self.metadata.spotting)
         return [PyramidSpotter(pool, self.labels, learned, options) for options in asked]
 
-    def pooled(self, frames: Sequence[Frame], firsts: Sequence[int]) -> list[NDArray[np.float32]]:
-        """Return the pyramid vectors (inputs,) of windows that begin at some of these frames and end with the last.
+    def pooled(self, frames: Sequence[Frame], firsts: Sequence[int]) -> NDArray[np.float32]:
+        """Return the pyramid vectors of windows that begin at some of these frames and end with the last, (n, inputs).
 
         Args:
             frames: valid, each with the activity that its encoder gave.
             firsts: the index of each window's first frame.
         """
-        activities = [frame.activity for frame in frames]
-        in_mirror = [self.reads_in_mirror((activities[first], activities[-1])) for first in firsts]
-        return pooled_windows(self.pyramid, activities, firsts, in_mirror)
+        return pooled_windows(self.pyramid, [frame.activity for frame in frames], firsts, self.metadata.mirrors)
 
     def prefix_sums(self, activities: Sequence[FrameActivity]) -> PrefixSums:
         """Return a segment's prefix sums, of the actor as seen or mirrored."""
@@ -243,7 +241,8 @@ class PyramidModel(Model):
         return self.stages.scores(self._pooled(activities), stages)
 
     def _pooled(self, activities: list[FrameActivity]) -> NDArray[np.float32]:
-        return pooled_windows(self.pyramid, activities, [0], [self.reads_in_mirror(activities)])[0]
+        vector: NDArray[np.float32] = pooled_windows(self.pyramid, activities, [0], self.metadata.mirrors)[0]
+        return vector
 
     def evidence(self, frames: Sequence[Frame]) -> Evidence:
         """Return what a complete segment is judged by, of the actor as seen or mirrored."""

@@ -67,7 +67,7 @@ class RegressedContinuation(Continuation):
         newest = frames[-1]
         assert newest.kinematics is not None
         inputs = frame_inputs(*newest.kinematics)[0] - self.usual
-        before, after = newest.activity.before.sums[0], newest.activity.after.sums[0]
+        before, after = newest.activity.before[0], newest.activity.after[0]
         activity = (after - before).astype(np.float32) / SCALE
         found = np.nan_to_num(inputs).astype(np.float32) @ self.axes[:INPUTS] + activity @ self.axes[INPUTS:]
         displacements: Array = found @ self.directions + self.offsets

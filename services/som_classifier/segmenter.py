@@ -15,7 +15,8 @@ from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order
 from som_classifier.answered_segments import AnsweredSegments
 from som_classifier.frames import Frame
-from som_classifier.segments import ClosedSegment, OpenSegment, SegmentState, with_cause
+from som_classifier.open_segments import OpenSegments
+from som_classifier.segments import ClosedSegment, Marked, OpenSegment, SegmentState, with_cause
 from som_classifier.streams import Streams
 
 MARKED = 256
@@ -38,9 +39,10 @@ class Segmenter:
     def __init__(self, counters: Counters) -> None:
         self.streams = Streams(counters)
         self._counters = counters
-        self._open: dict[str, OpenSegment] = {}
+        self._open = OpenSegments()
+        self._passed_ns = -1  # the newest stamp since the last tick
         self._answered = AnsweredSegments(counters)
-        self._marked: deque[OpenSegment] = deque(maxlen=MARKED)
+        self._marked: deque[Marked] = deque(maxlen=MARKED)
         self._session: str | None = None
         self._flow = Flow()
         self._is_resumed = False
@@ -59,7 +61,7 @@ class Segmenter:
         for answer in answers:
             self._answered.recall(answer)
             known = answer.segment_id, answer.start_ns, answer.agent, answer.hand, None, answer.end_ns
-            self._marked.append(OpenSegment(*known))
+            self._remember_marked(OpenSegment(*known))
 
     def posture(self, posture: Posture) -> tuple[Frame | None, list[ClosedSegment]]:
         """Receive the next posture; return its frame, None if it is stale, and the segments it closes."""
@@ -78,11 +80,8 @@ class Segmenter:
         elif late:
             self._counters.reject("late", f"{_name(posture)}, after its segment was answered")
         self._flow.note()
-        for segment in self._open.values():
-            if segment.start_ns is None:
-                segment.start_ns = posture.stamp_ns
-            if segment.state is SegmentState.OPEN and segment.start_ns <= posture.stamp_ns:
-                segment.waiting_since_ns = None
+        self._passed_ns = max(self._passed_ns, posture.stamp_ns)
+        self._open.date(posture.stamp_ns)
         return frame, closed + self._settle()
 
     def mark(self, mark: Segment) -> list[ClosedSegment]:
@@ -122,8 +121,8 @@ class Segmenter:
         self._now_ns = tick.monotonic_ns
         self._first_tick_ns = self._now_ns if self._first_tick_ns < 0 else self._first_tick_ns
         closed = []
-        for segment in list(self._open.values()):
-            if segment.waiting_since_ns is None:
+        for segment in self._open:
+            if segment.waiting_since_ns is None or segment.is_passed(self._passed_ns):
                 segment.waiting_since_ns = tick.monotonic_ns
             waited_ns = tick.monotonic_ns - segment.waiting_since_ns
             if segment.state is SegmentState.OPEN and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
@@ -133,20 +132,22 @@ class Segmenter:
                 passed = newest_ns is not None and newest_ns >= segment.latest_ns
                 if passed or self._flow.ended(segment.waiting_since_ns, MAX_SKEW_NS):
                     closed.append(self._close(segment))
+        self._passed_ns = -1
         return closed
 
     def open_at(self, agent: int, stamp_ns: int) -> list[OpenSegment]:
         """List the open segments of an agent that hold this instant."""
-        return [segment for segment in self._open.values() if segment.known_agent == agent and segment.holds(stamp_ns)]
+        return [segment for segment in self._open.of(agent) if segment.holds(stamp_ns)]
 
     def is_marked(self, agent: int, start_ns: int, end_ns: int) -> bool:
         """Tell whether a marked segment, open or answered, shares a frame with these bounds.
 
         It may be the agent's or, as long as nobody knows whose it is, anybody's.
         """
+        is_open = (each.marked for of in (agent, None) for each in self._open.of(of))
         return any(
-            segment.known_agent in (agent, None) and segment.overlaps(start_ns, end_ns)
-            for segment in chain(self._open.values(), self._marked)
+            of in (agent, None) and first_ns <= end_ns and start_ns <= until_ns
+            for of, first_ns, until_ns in chain(filter(None, is_open), self._marked)
         )
 
     def _state(self, mark: Segment) -> SegmentState:
@@ -162,13 +163,14 @@ class Segmenter:
 
     def _settle(self) -> list[ClosedSegment]:
         """Determine agents where that is possible; close the segments whose end is reached and those too long."""
-        closed = []
-        for segment in list(self._open.values()):
+        closed, newest_ns = [], self.streams.newest_ns
+        for segment in self._open.undecided(newest_ns):
             if segment.known_agent is None and segment.start_ns is not None:
                 segment.nearest = self.streams.nearest(segment.start_ns, segment.latest_ns)
+                self._open.sort()
             agent = segment.known_agent
             reached = agent is not None and self.streams.reached(agent, segment.latest_ns)
-            if segment.state is SegmentState.OPEN and segment.is_too_long(self.streams.newest_ns):
+            if segment.state is SegmentState.OPEN and segment.is_too_long(newest_ns):
                 closed.append(self._reject(segment, NO_END))
             elif segment.state is SegmentState.ENDED and reached and self._why_incomplete(segment) is None:
                 closed.append(self._close(segment))
@@ -180,7 +182,7 @@ class Segmenter:
             self._answered.remember(mark.segment_id, segment.start_ns, None)
             self._counters.reject("too_many_segments", f"{mark.segment_id!r} beside {len(self._open)} open ones")
             return [segment.rejected(f"too many open segments: {MOST_OPEN_SEGMENTS} at the most")]
-        self._open[mark.segment_id] = segment
+        self._open.add(segment)
         return self._settle()
 
     def _end(self, segment: OpenSegment, end_ns: int | None) -> list[ClosedSegment]:
@@ -190,6 +192,7 @@ class Segmenter:
             return [self._reject(segment, "end before start")]
         if segment.start_ns is not None and segment.end_ns - segment.start_ns > MAX_SEGMENT_NS:
             return [self._reject(segment, NO_END)]
+        self._open.sort()
         return self._settle()
 
     def _close(self, segment: OpenSegment) -> ClosedSegment:
@@ -232,9 +235,13 @@ class Segmenter:
 
     def _forget(self, segment: OpenSegment) -> None:
         """Move a segment from the open to the answered ones."""
-        del self._open[segment.segment_id]
-        self._marked.append(segment)
+        self._open.remove(segment)
+        self._remember_marked(segment)
         self._answered.remember(segment.segment_id, segment.start_ns, segment.end_ns)
+
+    def _remember_marked(self, segment: OpenSegment) -> None:
+        if segment.marked is not None:
+            self._marked.append(segment.marked)
 
     def _restart(self, session_id: str) -> list[ClosedSegment]:
         """Close all segments and forget all frames where the session is another one than before."""
@@ -248,11 +255,12 @@ class Segmenter:
         return closed
 
     def _close_all(self) -> list[ClosedSegment]:
+        self._passed_ns = -1
         return [
             self._reject(segment, "the source started anew")
             if segment.state is SegmentState.OPEN
             else self._close(segment)
-            for segment in list(self._open.values())
+            for segment in self._open
         ]
 
 

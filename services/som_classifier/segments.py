@@ -6,6 +6,7 @@ A segment is the frames with start <= stamp <= end; which belong to it is decide
 from dataclasses import dataclass
 from enum import Enum
 from functools import cached_property
+from typing import NamedTuple
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from actum.messages import Hand, Segment
@@ -36,6 +37,20 @@ class SegmentState(Enum):
     ANSWERED = "it is answered"
     USED_UP = "it is answered, and its id was used for another segment, which is rejected"
     FORMER = "it was answered in an earlier session of the source, so another segment may have its id"
+
+
+class Marked(NamedTuple):
+    """What is remembered of a marked segment that has been answered.
+
+    Attributes:
+        agent: whose it is; None where nobody knows.
+        start_ns: its start.
+        until_ns: the latest that its end may be.
+    """
+
+    agent: int | None
+    start_ns: int
+    until_ns: int
 
 
 @dataclass
@@ -92,12 +107,17 @@ class OpenSegment:
             self.start_ns is not None and self.start_ns <= stamp_ns and (self.end_ns is None or stamp_ns <= self.end_ns)
         )
 
-    def overlaps(self, start_ns: int, end_ns: int) -> bool:
-        """Tell whether it shares an instant with these bounds; it lasts no longer than a segment may."""
+    def is_passed(self, newest_ns: int) -> bool:
+        """Tell whether its end mark is awaited, and frames have come that are no older than its start."""
+        return self.state is SegmentState.OPEN and self.start_ns is not None and self.start_ns <= newest_ns
+
+    @property
+    def marked(self) -> Marked | None:
+        """What it covers: it lasts no longer than a segment may; None where its start is not known."""
         if self.start_ns is None:
-            return False
+            return None
         longest_ns = self.start_ns + MAX_SEGMENT_NS
-        return self.start_ns <= end_ns and start_ns <= min(longest_ns, self.end_ns or longest_ns)
+        return Marked(self.known_agent, self.start_ns, min(longest_ns, self.end_ns or longest_ns))
 
     def rejected(self, reason: str) -> "ClosedSegment":
         """Return the segment closed, without frames and with the reason for which it is rejected."""

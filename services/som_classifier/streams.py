@@ -11,6 +11,7 @@ from actum.node import SECOND_NS, Counters
 from actum.stamps import LostFrames, Order, StampGuard
 from som_classifier.frames import Frame, Stretch, frame_of
 from som_classifier.kinematics import KinematicsFilter
+from som_classifier.open_segments import FAR_FUTURE_NS
 from som_classifier.segments import ClosedSegment, OpenSegment, with_cause
 from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
 
@@ -22,9 +23,6 @@ MEMORY_NS = MAX_SEGMENT_NS + MAX_SKEW_NS
 
 BEFORE_NS = SECOND_NS
 """How long before a segment frames are looked at (ns): the one before it tells whether the next one follows it."""
-
-FAR_FUTURE_NS = 2**62
-"""Stands for the end of what has none: later than any stamp."""
 
 
 class Stream(StreamBuffer[Frame]):
@@ -102,7 +100,9 @@ class Streams:
         self._streams: dict[int, Stream] = {}
         self._encoders: Callable[[], Encode] | None = None
         self._plan = NO_SEARCH
+        self._kept = 0
         self.newest_ns: int | None = None
+        self._silent_since_ns = FAR_FUTURE_NS  # no agent has been silent for longer
 
     def use(self, encoders: Callable[[], Encode], plan: SearchPlan = NO_SEARCH) -> None:
         """Encode every agent's frames by an encoder of its own, kept ones and those to come; search the latter."""
@@ -129,7 +129,7 @@ class Streams:
     def clear(self) -> None:
         """Forget everything."""
         self._streams.clear()
-        self.newest_ns = None
+        self._kept, self.newest_ns, self._silent_since_ns = 0, None, FAR_FUTURE_NS
 
     def add(self, posture: Posture) -> tuple[Order, Frame | None]:
         """Keep the next posture of its agent, as `Stream.add` does."""
@@ -137,7 +137,9 @@ class Streams:
         if stream is None:
             stream = Stream(self._encoders() if self._encoders else None, Search(posture, self._plan))
         self._streams[posture.agent] = stream  # behind those heard before it
+        kept = len(stream)
         order, frame = stream.add(posture)
+        self._kept += len(stream) - kept
         if frame is not None:
             self._advance(posture.stamp_ns)
             self._make_room()
@@ -147,11 +149,12 @@ class Streams:
         """Forget the agent silent for longest where there are too many, and the oldest frame where that is."""
         if len(self._streams) > MOST_STREAMS:
             silent = next(iter(self._streams))
-            del self._streams[silent]
+            self._forget(silent)
             self._counters.reject("too_many_people", f"more than {MOST_STREAMS}: agent {silent} is forgotten")
-        if sum(map(len, self._streams.values())) > MOST_FRAMES:
+        if self._kept > MOST_FRAMES:
             longest = max(self._streams.values(), key=len)
             longest.let_go()
+            self._kept -= 1
             self._counters.reject("too_many_frames", f"more than {MOST_FRAMES} in a minute: the oldest is forgotten")
 
     def reached(self, agent: int, stamp_ns: int) -> bool:
@@ -207,6 +210,8 @@ class Streams:
             end_ns: its end.
             resumed: whether another process was there before this one.
         """
+        if any(stream.is_dense(start_ns, end_ns) for stream in self._streams.values()):
+            return None
         frames = self._since(start_ns - BEFORE_NS)
         if not frames:
             return "the classifier started late: it has received no frame since its start" if resumed else None
@@ -232,12 +237,17 @@ class Streams:
 
         A stamp that is far from the newest one replaces it, so that an absurd one counts only until the next.
         """
-        if self.newest_ns is None or abs(stamp_ns - self.newest_ns) > MEMORY_NS:
-            self.newest_ns = stamp_ns
-        self.newest_ns = max(stamp_ns, self.newest_ns)
-        newest_ns, streams = self.newest_ns, self._streams
-        for agent in [agent for agent, each in streams.items() if abs(each.newest_ns - newest_ns) > MEMORY_NS]:
-            del streams[agent]
+        is_far = self.newest_ns is None or abs(stamp_ns - self.newest_ns) > MEMORY_NS
+        self.newest_ns = newest_ns = stamp_ns if is_far else max(stamp_ns, self.newest_ns or 0)
+        self._silent_since_ns = min(self._silent_since_ns, stamp_ns)
+        if not is_far and newest_ns - self._silent_since_ns <= MEMORY_NS:
+            return
+        for agent in [agent for agent, each in self._streams.items() if abs(each.newest_ns - newest_ns) > MEMORY_NS]:
+            self._forget(agent)
+        self._silent_since_ns = min(each.newest_ns for each in self._streams.values())
+
+    def _forget(self, agent: int) -> None:
+        self._kept -= len(self._streams.pop(agent))
 
 
 def _is_broken(before: Frame, then: Frame) -> bool:

@@ -33,7 +33,7 @@ class SupervisedLayer:
         object.__setattr__(self, "weights", weights)
 
     @classmethod
-    def random(cls, actions: int, inputs: int, rng: np.random.Generator) -> "SupervisedLayer":
+    def random(cls, actions: int, inputs: int, rng: "np.random.Generator") -> "SupervisedLayer":
         """Make an untrained layer: weights drawn from U(0, 1), then made unit length."""
         weights = rng.random((actions, inputs))
         return cls(weights / np.linalg.norm(weights, axis=1, keepdims=True))
@@ -62,7 +62,7 @@ class SupervisedLayer:
         targets: Indices,
         beta: float,
         epochs: int,
-        rng: np.random.Generator,
+        rng: "np.random.Generator",
         report: Callable[[int, int], None] = lambda done, total: None,
     ) -> "SupervisedLayer":
         """Return the layer after showing it every row of (n, inputs) once per epoch, in random order.

@@ -27,6 +27,7 @@
 #define INLINE static inline __attribute__((always_inline))
 
 enum { SIDES = 2, CHANNELS = 4, JOINTS = 15, COORDINATES = 45, PARTS = 5, LIMBS = 4, MOMENTS = 8, MOST_INSTANTS = 64, LANES = 8, BLOCK = 32,
+       MOST_SIGNED = 4096,
        MOST_INPUTS = 3 * COORDINATES, TOTALS = PARTS + LIMBS * MOMENTS + 3, BODY = 4 * COORDINATES + 16 };
 
 /* Release the buffers that were taken, and return None, or NULL where an error is set. */
@@ -50,52 +51,13 @@ static int are_long_enough(const Py_buffer *buffers, const size_t *bytes, int co
     return 1;
 }
 
-/* Prefix sums of a segment: rows of sums with the distances travelled, or a list of the frames' activities. Of an
-   activity the first item is the prefix before the frame, the second that after it; of a prefix the first are the sums of
-   both sides, the second is the distance. Nothing of Python is touched where there is no list. */
+/* Prefix sums of a segment of so many frames: a row of sums before, between and after its frames, of which some units
+   are another side's and skipped, and the distances travelled until then. */
 typedef struct {
-    PyObject *list;
-    const uint32_t *rows;
+    const uint32_t *const *rows;
     const int64_t *travelled_um;
-    Py_ssize_t first, frames;
-    int side;
+    Py_ssize_t frames, skipped;
 } Segment;
-
-static int failed(const Segment *segment) { return segment->list != NULL && PyErr_Occurred() != NULL; }
-
-static PyObject *prefix_of(const Segment *segment, Py_ssize_t k)
-{
-    Py_ssize_t last = segment->first + (k ? k - 1 : 0);
-    return PyTuple_GetItem(PyList_GetItem(segment->list, last), k ? 1 : 0);
-}
-
-static double travelled(const Segment *segment, Py_ssize_t k)
-{
-    if (segment->list == NULL)
-        return (double)segment->travelled_um[k];
-    PyObject *prefix = prefix_of(segment, k);
-    return prefix == NULL ? NAN : (double)PyLong_AsLongLong(PyTuple_GetItem(prefix, 1));
-}
-
-/* Take the buffer of the sums before frame k, which must have so many units; -1 where an error is set. */
-static int take_row(const Segment *segment, Py_ssize_t k, Py_ssize_t units, Py_buffer *row)
-{
-    PyObject *sums = NULL;
-    row->obj = NULL;
-    row->buf = (void *)(segment->rows + k * units);
-    if (segment->list == NULL)
-        return 0;
-    if ((sums = prefix_of(segment, k)) != NULL)
-        sums = PySequence_GetItem(PyTuple_GetItem(sums, 0), segment->side);
-    int failed = sums == NULL || PyObject_GetBuffer(sums, row, PyBUF_SIMPLE) < 0;
-    Py_XDECREF(sums);
-    if (!failed && row->len != units * 4) {
-        PyErr_SetString(PyExc_ValueError, "the sums are not of the length of a cell");
-        PyBuffer_Release(row);
-        failed = 1;
-    }
-    return failed ? -1 : 0;
-}
 
 /* The instants, as fractional frame numbers, at which a segment reaches the progress asked for: np.interp of rising
    `reached`, which is half time and half way. */
@@ -104,7 +66,7 @@ static double instant_of(double progress, const Segment *segment, double begin, 
     Py_ssize_t frames = segment->frames;
     double per_frame = moved > 0 ? 0.5 / (double)frames : 1.0 / (double)frames, per_um = moved > 0 ? 0.5 / moved : 0.0;
     Py_ssize_t low = 0, high = frames;
-#define REACHED(k) (per_frame * (double)(k) + per_um * (travelled(segment, k) - begin))
+#define REACHED(k) (per_frame * (double)(k) + per_um * ((double)segment->travelled_um[k] - begin))
     if (progress >= REACHED(frames))
         return (double)frames;
     if (progress < REACHED(0))
@@ -121,22 +83,6 @@ static double instant_of(double progress, const Segment *segment, double begin, 
 #undef REACHED
 }
 
-/* One border's sum since the segment's start, between two frames by its share of the second. */
-VECTORISED static void sum_at_border(
-    const uint32_t *start, const uint32_t *below, const uint32_t *above, float share, float *out, Py_ssize_t units)
-{
-    for (Py_ssize_t u = 0; u < units; u++) {
-        float before = (float)(below[u] - start[u]);
-        out[u] = before + ((float)(above[u] - start[u]) - before) * share;
-    }
-}
-
-VECTORISED static void fourth_root_of_mean(const float *begin, const float *end, float length, float *out, Py_ssize_t units)
-{
-    for (Py_ssize_t u = 0; u < units; u++)
-        out[u] = sqrtf(sqrtf((end[u] - begin[u]) / length));
-}
-
 /* A pyramid: its borders, and at which of them each cell begins and ends. */
 typedef struct {
     const double *borders;
@@ -145,43 +91,100 @@ typedef struct {
     double scale;
 } Cells;
 
-/* Write the fourth root of each cell's mean activity, cells * units; `at` and `at_border` are room for each border. */
-static void pool(const Segment *segment, const Cells *cells, Py_ssize_t units, double *at, float *at_border, float *out)
+/* Where a border lies: before which frame, and by which share of that frame after it. */
+typedef struct {
+    double at;
+    float share;
+    Py_ssize_t row;
+} Place;
+
+/* Sums at a border since the segment's start. Those of a few frames are converted as signed numbers, which is faster. */
+INLINE void sum_at_border(const uint32_t *start, const uint32_t *below, const uint32_t *above, float share, int few,
+                          float *out, Py_ssize_t units)
 {
-    double begin = travelled(segment, 0), moved = travelled(segment, segment->frames) - begin;
-    Py_buffer start, below, above;
-    if (failed(segment) || take_row(segment, 0, units, &start) < 0)
-        return;
-    for (Py_ssize_t k = 0; k < cells->count && !failed(segment); k++) {
-        at[k] = instant_of(cells->borders[k], segment, begin, moved);
-        Py_ssize_t row = (Py_ssize_t)at[k];
-        if (row > segment->frames - 1)
-            row = segment->frames - 1;
-        if (failed(segment) || take_row(segment, row, units, &below) < 0)
-            break;
-        if (take_row(segment, row + 1, units, &above) == 0) {
-            sum_at_border(start.buf, below.buf, above.buf, (float)(at[k] - (double)row), at_border + k * units, units);
-            PyBuffer_Release(&above);
-        }
-        PyBuffer_Release(&below);
-    }
-    PyBuffer_Release(&start);
-    for (Py_ssize_t c = 0; c < cells->cells && !failed(segment); c++) {
-        int32_t from = cells->begins[c], to = cells->ends[c];
-        float length = (float)((at[to] - at[from]) * cells->scale);
-        fourth_root_of_mean(at_border + from * units, at_border + to * units, length, out + c * units, units);
+    for (Py_ssize_t u = 0; u < units; u++) {
+        uint32_t first = below[u] - start[u], second = above[u] - start[u];
+        float before = few ? (float)(int32_t)first : (float)first, after = few ? (float)(int32_t)second : (float)second;
+        out[u] = before + (after - before) * share;
     }
 }
 
-/* Pool spans of a run of frames, from the first of each up to the one before `after`. */
-static void pool_spans(const Segment *run, const Cells *cells, const int64_t *spans, Py_ssize_t count, Py_ssize_t units,
-                       double *at, float *at_border, float *out)
+/* Write the fourth roots of the cells' means by the sums at all borders, for which there is room. */
+INLINE void pool_at(const Segment *segment, const Cells *cells, const Place *places, Py_ssize_t units, int few,
+                    float *at_border, float *out)
 {
-    for (Py_ssize_t n = 0; n < count; n++) {
-        int64_t first = spans[2 * n], after = spans[2 * n + 1];
-        Segment segment = {NULL, run->rows + first * units, run->travelled_um + first, 0, after - first, 0};
-        pool(&segment, cells, units, at, at_border, out + n * cells->cells * units);
+    for (Py_ssize_t k = 0; k < cells->count; k++) {
+        const uint32_t *const *at = segment->rows + places[k].row;
+        sum_at_border(segment->rows[0] + segment->skipped, at[0] + segment->skipped, at[1] + segment->skipped,
+                      places[k].share, few, at_border + k * units, units);
     }
+    for (Py_ssize_t c = 0; c < cells->cells; c++) {
+        const float *begin = at_border + cells->begins[c] * units, *end = at_border + cells->ends[c] * units;
+        float length = (float)((places[cells->ends[c]].at - places[cells->begins[c]].at) * cells->scale);
+        for (Py_ssize_t u = 0; u < units; u++)
+            out[c * units + u] = sqrtf(sqrtf((end[u] - begin[u]) / length));
+    }
+}
+
+VECTORISED static void pool_few(const Segment *segment, const Cells *cells, const Place *places, Py_ssize_t units,
+                                float *at_border, float *out)
+{
+    pool_at(segment, cells, places, units, 1, at_border, out);
+}
+
+VECTORISED static void pool_many(const Segment *segment, const Cells *cells, const Place *places, Py_ssize_t units,
+                                 float *at_border, float *out)
+{
+    pool_at(segment, cells, places, units, 0, at_border, out);
+}
+
+/* Write the fourth root of each cell's mean activity, cells * units; `places` and `at_border` are room for borders. */
+static void pool(const Segment *segment, const Cells *cells, Py_ssize_t units, Place *places, float *at_border, float *out)
+{
+    double begin = (double)segment->travelled_um[0], moved = (double)segment->travelled_um[segment->frames] - begin;
+    for (Py_ssize_t k = 0; k < cells->count; k++) {
+        double at = instant_of(cells->borders[k], segment, begin, moved);
+        Py_ssize_t row = (Py_ssize_t)at < segment->frames ? (Py_ssize_t)at : segment->frames - 1;
+        places[k] = (Place){at, (float)(at - (double)row), row};
+    }
+    (segment->frames < MOST_SIGNED ? pool_few : pool_many)(segment, cells, places, units, at_border, out);
+}
+
+/* Room for what pooling needs: rows and distances of so many frames, and the borders of a pyramid. */
+typedef struct {
+    const uint32_t **rows;
+    const int64_t **totals;
+    int64_t *travelled_um;
+    Place *places;
+    float *at_border;
+} Room;
+
+static void leave(Room *room)
+{
+    PyMem_Free(room->rows);
+    PyMem_Free(room->totals);
+    PyMem_Free(room->travelled_um);
+    PyMem_Free(room->places);
+    PyMem_Free(room->at_border);
+}
+
+/* Take room; sets an error where there is none. */
+static Room room_for(Py_ssize_t frames, Py_ssize_t borders, Py_ssize_t units)
+{
+    Room room = {PyMem_Malloc((frames + 1) * sizeof *room.rows),         PyMem_Malloc((frames + 1) * sizeof *room.totals),
+                 PyMem_Malloc((frames + 1) * sizeof *room.travelled_um), PyMem_Malloc(borders * sizeof *room.places + 1),
+                 PyMem_Malloc(borders * units * sizeof(float) + 1)};
+    if (room.rows == NULL || room.totals == NULL || room.travelled_um == NULL || room.places == NULL || room.at_border == NULL)
+        PyErr_NoMemory();
+    return room;
+}
+
+/* Pool a span of frames, from the first up to the one before `after`. */
+static void pool_span(const Room *room, const Cells *cells, Py_ssize_t first, Py_ssize_t after, Py_ssize_t skipped,
+                      Py_ssize_t units, float *out)
+{
+    Segment segment = {room->rows + first, room->travelled_um + first, after - first, skipped};
+    pool(&segment, cells, units, room->places, room->at_border, out);
 }
 
 PyDoc_STRVAR(pooled_doc,
@@ -195,63 +198,129 @@ static PyObject *pooled(PyObject *module, PyObject *args)
     if (!PyArg_ParseTuple(args, "y*y*y*y*y*y*dw*", &b[0], &b[1], &b[2], &b[3], &b[4], &b[5], &scale, &b[6]))
         return NULL;
     Cells cells = {b[3].buf, b[4].buf, b[5].buf, b[3].len / 8, b[4].len / 4, scale};
-    Segment run = {NULL, b[0].buf, b[1].buf, 0, b[1].len / 8 - 1, 0};
     const int64_t *spans = b[2].buf;
-    Py_ssize_t count = b[2].len / 16, units = run.frames >= 0 ? b[0].len / 4 / (run.frames + 1) : 0;
+    Py_ssize_t frames = b[1].len / 8 - 1, count = b[2].len / 16, units = frames >= 0 ? b[0].len / 4 / (frames + 1) : 0;
     int fits = cells.cells > 0 && units > 0 && b[6].len == count * cells.cells * units * (Py_ssize_t)sizeof(float);
     for (Py_ssize_t n = 0; n < count && fits; n++)
-        fits = spans[2 * n] >= 0 && spans[2 * n] < spans[2 * n + 1] && spans[2 * n + 1] <= run.frames;
-    double *at = PyMem_Malloc(cells.count * sizeof(double) + 1);
-    float *at_border = PyMem_Malloc(cells.count * units * sizeof(float) + 1);
-    if (at == NULL || at_border == NULL)
-        PyErr_NoMemory();
-    else if (!fits)
+        fits = spans[2 * n] >= 0 && spans[2 * n] < spans[2 * n + 1] && spans[2 * n + 1] <= frames;
+    Room room = room_for(fits ? frames : 0, cells.count, units);
+    if (!fits)
         PyErr_SetString(PyExc_ValueError, "a span holds no frame or reaches beyond the sums, or the result has another size");
-    else {
+    if (!PyErr_Occurred()) {
         Py_BEGIN_ALLOW_THREADS
-        pool_spans(&run, &cells, spans, count, units, at, at_border, b[6].buf);
+        memcpy(room.travelled_um, b[1].buf, (frames + 1) * sizeof *room.travelled_um);
+        for (Py_ssize_t k = 0; k <= frames; k++)
+            room.rows[k] = (const uint32_t *)b[0].buf + k * units;
+        for (Py_ssize_t n = 0; n < count; n++)
+            pool_span(&room, &cells, spans[2 * n], spans[2 * n + 1], 0, units, (float *)b[6].buf + n * cells.cells * units);
         Py_END_ALLOW_THREADS
     }
-    PyMem_Free(at);
-    PyMem_Free(at_border);
+    leave(&room);
     return released(b, 7);
 }
 
-PyDoc_STRVAR(pooled_windows_doc,
-    "pooled_windows(activities, firsts, sides, borders, begins, ends, scale, out)\n--\n\n"
-    "Write the same for several windows, (windows, cells * units), that end with the last of the frames' activities.");
-static PyObject *pooled_windows(PyObject *module, PyObject *args)
+static void spreads_between(const int64_t *before, const int64_t *after, double *of)
 {
-    PyObject *activities, *firsts, *sides;
-    Py_buffer b[4];
-    double scale;
-    if (!PyArg_ParseTuple(args, "O!O!O!y*y*y*dw*", &PyList_Type, &activities, &PyList_Type, &firsts, &PyList_Type, &sides,
-                          &b[0], &b[1], &b[2], &scale, &b[3]))
-        return NULL;
-    Cells cells = {b[0].buf, b[1].buf, b[2].buf, b[0].len / 8, b[1].len / 4, scale};
-    if (cells.cells < 1 || PyList_Size(sides) != PyList_Size(firsts)) {
-        PyErr_SetString(PyExc_ValueError, "the pyramid has no cell, or a window no side");
-        return released(b, 4);
+    for (int limb = 0; limb < LIMBS; limb++, before += MOMENTS, after += MOMENTS) {
+        int64_t count = after[MOMENTS - 1] - before[MOMENTS - 1], squares = after[MOMENTS - 2] - before[MOMENTS - 2];
+        double means2 = 0.0, variance;
+        for (int i = 0; i < MOMENTS - 2; i++) {
+            double sum = (double)(after[i] - before[i]);
+            means2 += sum * sum;
+        }
+        variance = count ? (double)squares / (double)count - means2 / ((double)count * (double)count) : 0.0;
+        of[limb] = variance > 0.0 ? sqrt(variance) : 0.0;
     }
-    Py_ssize_t windows = PyList_Size(firsts), row = windows ? b[3].len / 4 / windows : 0, units = row / cells.cells;
-    double *at = PyMem_Malloc(cells.count * sizeof(double));
-    float *at_border = PyMem_Malloc(cells.count * units * sizeof(float) + 1);
-    if (at == NULL || at_border == NULL)
-        PyErr_NoMemory();
-    for (Py_ssize_t w = 0; w < windows && !PyErr_Occurred(); w++) {
-        Py_ssize_t first = PyLong_AsSsize_t(PyList_GetItem(firsts, w));
-        int side = PyLong_AsLong(PyList_GetItem(sides, w)) != 0;
-        Segment segment = {activities, NULL, NULL, first, PyList_Size(activities) - first, side};
-        if (!PyErr_Occurred() && (first < 0 || segment.frames < 1))
-            PyErr_SetString(PyExc_ValueError, "a window holds no frame");
-        if (!PyErr_Occurred())
-            pool(&segment, &cells, units, at, at_border, (float *)b[3].buf + w * row);
-    }
-    PyMem_Free(at);
-    PyMem_Free(at_border);
-    return released(b, 4);
 }
 
+/* Whether of all limbs the left arm moves most over the frames between two sums of moments, and clearly more than the right. */
+static int left_arm_moves_most(const int64_t *before, const int64_t *after, double jitter_mm, double factor)
+{
+    enum { RIGHT_ARM, LEFT_ARM };
+    double of[LIMBS], most;
+    spreads_between(before, after, of);
+    most = of[0];
+    for (int limb = 1; limb < LIMBS; limb++)
+        most = of[limb] > most ? of[limb] : most;
+    return most == of[LEFT_ARM] && most + jitter_mm > factor * (of[RIGHT_ARM] + jitter_mm);
+}
+
+/* Find the rows before row k + 1 of a run, which must be there, and add them; -1 where an error is set. */
+static int add_rows(Room *room, Py_ssize_t k, const Py_buffer *sums, const Py_buffer *totals, Py_ssize_t row, Py_ssize_t units)
+{
+    size_t rows = (size_t)row + 1;
+    if (row < 0 || (size_t)sums->len < rows * SIDES * units * sizeof(uint32_t)
+        || (size_t)totals->len < rows * TOTALS * sizeof(int64_t)) {
+        PyErr_SetString(PyExc_ValueError, "a run of frames lacks the sums of one of them");
+        return -1;
+    }
+    room->rows[k] = (const uint32_t *)sums->buf + row * SIDES * units;
+    room->totals[k] = (const int64_t *)totals->buf + row * TOTALS;
+    room->travelled_um[k] = 0;
+    for (int part = 0; part < PARTS; part++)
+        room->travelled_um[k] += room->totals[k][part];
+    return 0;
+}
+
+/* Find the sums before, between and after frames by their activities: a run, and the row before the frame. The list
+   keeps the runs, so their buffers need not be held. -1 where an error is set. */
+static int find_rows(Room *room, PyObject *activities, Py_ssize_t units)
+{
+    PyObject *run = NULL;
+    Py_buffer sums, totals;
+    for (Py_ssize_t k = 0; k < PyList_Size(activities); k++) {
+        PyObject *activity = PyList_GetItem(activities, k), *next = PyTuple_GetItem(activity, 0);
+        Py_ssize_t row = next == NULL ? -1 : PyLong_AsSsize_t(PyTuple_GetItem(activity, 1));
+        if (PyErr_Occurred())
+            return -1;
+        if (next != run) {
+            if (PyObject_GetBuffer(PyTuple_GetItem(next, 0), &sums, PyBUF_SIMPLE) < 0)
+                return -1;
+            PyBuffer_Release(&sums);
+            if (PyObject_GetBuffer(PyTuple_GetItem(next, 1), &totals, PyBUF_SIMPLE) < 0)
+                return -1;
+            PyBuffer_Release(&totals);
+            run = next;
+        }
+        if ((k == 0 && add_rows(room, 0, &sums, &totals, row, units) < 0)
+            || add_rows(room, k + 1, &sums, &totals, row + 1, units) < 0)
+            return -1;
+    }
+    return 0;
+}
+
+PyDoc_STRVAR(pooled_windows_doc,
+    "pooled_windows(activities, firsts, mirrors, jitter_mm, factor, borders, begins, ends, scale, out)\n--\n\n"
+    "Write the same for several windows, (windows, cells * units), that end with the last of the frames' activities, as\n"
+    "seen or, where the mirror image may be read and the left arm acts, mirrored.");
+static PyObject *pooled_windows(PyObject *module, PyObject *args)
+{
+    PyObject *activities, *firsts;
+    Py_buffer b[4];
+    int mirrors;
+    double jitter_mm, factor, scale;
+    if (!PyArg_ParseTuple(args, "O!O!pddy*y*y*dw*", &PyList_Type, &activities, &PyList_Type, &firsts, &mirrors, &jitter_mm,
+                          &factor, &b[0], &b[1], &b[2], &scale, &b[3]))
+        return NULL;
+    Cells cells = {b[0].buf, b[1].buf, b[2].buf, b[0].len / 8, b[1].len / 4, scale};
+    Py_ssize_t windows = PyList_Size(firsts), frames = PyList_Size(activities);
+    Py_ssize_t row = windows ? b[3].len / (Py_ssize_t)sizeof(float) / windows : 0, units = cells.cells ? row / cells.cells : 0;
+    Room room = room_for(frames, cells.count, units);
+    if (!PyErr_Occurred() && units < 1)
+        PyErr_SetString(PyExc_ValueError, "there is no window, or the pyramid has no cell");
+    int found = !PyErr_Occurred() && find_rows(&room, activities, units) == 0;
+    for (Py_ssize_t w = 0; w < windows && found; w++) {
+        Py_ssize_t first = PyLong_AsSsize_t(PyList_GetItem(firsts, w));
+        if (!PyErr_Occurred() && (first < 0 || first >= frames))
+            PyErr_SetString(PyExc_ValueError, "a window holds no frame");
+        if (PyErr_Occurred())
+            break;
+        int side = mirrors && left_arm_moves_most(room.totals[first] + PARTS, room.totals[frames] + PARTS, jitter_mm, factor);
+        pool_span(&room, &cells, first, frames, side * units, units, (float *)b[3].buf + w * row);
+    }
+    leave(&room);
+    return released(b, 4);
+}
 /* NumPy's pairwise sum of contiguous numbers. */
 static float pairwise_sum(const float *x, Py_ssize_t n)
 {
@@ -447,33 +516,33 @@ static void add_totals(const double *motion, const double *posture, const double
 }
 
 PyDoc_STRVAR(added_doc,
-    "added(activities, shares, scale, before, after, motion, posture, mirror, signs, units, limbs, smallest2,\n"
-    "      totals_before, totals_after) -> (winner, winner in the mirror, displacement)\n--\n\n"
+    "added(activities, shares, scale, motion, posture, mirror, signs, units, limbs, smallest2, sums, totals, row)\n"
+    "-> (winner, winner in the mirror)\n--\n\n"
     "Add a frame's normalised activities, quantised, to the sums before it, (2, channels * units), and its totals to\n"
-    "those before it; return the posture map's winners and the displacement of all parts (um).");
+    "those before it: from a row of each to the next. Return the posture map's winners.");
 static PyObject *added(PyObject *module, PyObject *args)
 {
-    Py_buffer b[12];
+    Py_buffer b[10];
     float scale;
     double smallest2, image[COORDINATES];
-    Py_ssize_t winners[SIDES];
-    if (!PyArg_ParseTuple(args, "y*y*fy*w*y*y*y*y*y*y*dy*w*", &b[0], &b[1], &scale, &b[2], &b[3], &b[4], &b[5], &b[6],
-                          &b[7], &b[8], &b[9], &smallest2, &b[10], &b[11]))
+    Py_ssize_t row, winners[SIDES];
+    if (!PyArg_ParseTuple(args, "y*y*fy*y*y*y*y*y*dw*w*n", &b[0], &b[1], &scale, &b[2], &b[3], &b[4], &b[5], &b[6], &b[7],
+                          &smallest2, &b[8], &b[9], &row))
         return NULL;
     const float *activities = b[0].buf, *shares = b[1].buf;
-    const uint32_t *before = b[2].buf;
-    const double *posture = b[5].buf, *signs = b[7].buf;
-    const int32_t *mirror = b[6].buf;
-    const int64_t *totals_before = b[10].buf;
-    uint32_t *after = b[3].buf;
-    int64_t *totals = b[11].buf, moved_um = 0;
-    Py_ssize_t units = b[0].len / (Py_ssize_t)sizeof(float) / SIDES / CHANNELS;
-    const size_t sums_bytes = b[0].len, bytes[12] = {
-        SIDES * CHANNELS * sizeof(float), CHANNELS * sizeof(float), sums_bytes, sums_bytes, PARTS * sizeof(double),
-        sizeof image, COORDINATES * sizeof(int32_t), sizeof image, units * COORDINATES * sizeof(float),
-        LIMBS * (MOMENTS - 2) * sizeof(int32_t), TOTALS * sizeof(int64_t), TOTALS * sizeof(int64_t)};
-    if (!are_long_enough(b, bytes, 12))
-        return released(b, 12);
+    const double *posture = b[3].buf, *signs = b[5].buf;
+    const int32_t *mirror = b[4].buf;
+    Py_ssize_t all = b[0].len / (Py_ssize_t)sizeof(float), units = all / SIDES / CHANNELS, rows = row < 0 ? 0 : row + 2;
+    const size_t bytes[10] = {
+        SIDES * CHANNELS * sizeof(float), CHANNELS * sizeof(float), PARTS * sizeof(double), sizeof image,
+        COORDINATES * sizeof(int32_t), sizeof image, units * COORDINATES * sizeof(float),
+        LIMBS * (MOMENTS - 2) * sizeof(int32_t), rows * all * sizeof(uint32_t), rows * TOTALS * sizeof(int64_t)};
+    if (row < 0)
+        PyErr_SetString(PyExc_ValueError, "there is no row before the first");
+    if (row < 0 || !are_long_enough(b, bytes, 10))
+        return released(b, 10);
+    uint32_t *before = (uint32_t *)b[8].buf + row * all, *after = before + all;
+    int64_t *totals = (int64_t *)b[9].buf + (row + 1) * TOTALS;
     for (int block = 0; block < SIDES * CHANNELS; block++) {
         const float *activity = activities + block * units;
         float factor = shares[block % CHANNELS] / pairwise_sum(activity, units);
@@ -483,13 +552,11 @@ static PyObject *added(PyObject *module, PyObject *args)
     }
     for (int i = 0; i < COORDINATES; i++)
         image[i] = posture[mirror[i]] * signs[i];
-    memcpy(totals, totals_before, TOTALS * sizeof *totals);
-    add_totals(b[4].buf, posture, image, b[9].buf, b[8].buf, winners, smallest2, totals);
-    for (int part = 0; part < PARTS; part++)
-        moved_um += totals[part] - totals_before[part];
-    for (int n = 0; n < 12; n++)
+    memcpy(totals, totals - TOTALS, TOTALS * sizeof *totals);
+    add_totals(b[2].buf, posture, image, b[7].buf, b[6].buf, winners, smallest2, totals);
+    for (int n = 0; n < 10; n++)
         PyBuffer_Release(&b[n]);
-    return Py_BuildValue("nnL", winners[0], winners[1], (long long)moved_um);
+    return Py_BuildValue("nn", winners[0], winners[1]);
 }
 
 PyDoc_STRVAR(smoothed_doc,
@@ -574,6 +641,36 @@ static void apply(const double *transform, const double *joints, double *out)
         for (int row = 0; row < 3; row++, out++)
             *out = transform[4 * row] * joints[0] + transform[4 * row + 1] * joints[1] + transform[4 * row + 2] * joints[2]
                 + transform[4 * row + 3];
+}
+
+/* Whether this is a list of so many joints, each None or a list of three floats, and nothing else. */
+static int are_plain_joints(PyObject *joints)
+{
+    if (!PyList_CheckExact(joints) || PyList_Size(joints) != JOINTS)
+        return 0;
+    for (int joint = 0; joint < JOINTS; joint++) {
+        PyObject *point = PyList_GetItem(joints, joint);
+        if (point == Py_None)
+            continue;
+        if (!PyList_CheckExact(point) || PyList_Size(point) != 3)
+            return 0;
+        for (int i = 0; i < 3; i++)
+            if (!PyFloat_CheckExact(PyList_GetItem(point, i)))
+                return 0;
+    }
+    return 1;
+}
+
+PyDoc_STRVAR(plain_joints_or_doc,
+    "plain_joints_or(value, validate)\n--\n\n"
+    "Return a list of joints, each None or a list of three floats, as it is; what another value is, `validate` says.");
+static PyObject *plain_joints_or(PyObject *module, PyObject *const *args, Py_ssize_t count)
+{
+    if (count != 2) {
+        PyErr_SetString(PyExc_TypeError, "a value and what validates it are needed");
+        return NULL;
+    }
+    return are_plain_joints(args[0]) ? Py_NewRef(args[0]) : PyObject_CallFunctionObjArgs(args[1], args[0], NULL);
 }
 
 /* Read a message's joints, a list of fifteen lists of three numbers, NaN where one is unknown (None). Return how many
@@ -854,20 +951,6 @@ static PyObject *posture(PyObject *module, PyObject *args)
 }
 
 /* Each limb's spread (mm) over the frames between two sums of moments. */
-static void spreads_between(const int64_t *before, const int64_t *after, double *of)
-{
-    for (int limb = 0; limb < LIMBS; limb++, before += MOMENTS, after += MOMENTS) {
-        int64_t count = after[MOMENTS - 1] - before[MOMENTS - 1], squares = after[MOMENTS - 2] - before[MOMENTS - 2];
-        double means2 = 0.0, variance;
-        for (int i = 0; i < MOMENTS - 2; i++) {
-            double sum = (double)(after[i] - before[i]);
-            means2 += sum * sum;
-        }
-        variance = count ? (double)squares / (double)count - means2 / ((double)count * (double)count) : 0.0;
-        of[limb] = variance > 0.0 ? sqrt(variance) : 0.0;
-    }
-}
-
 PyDoc_STRVAR(spreads_doc,
     "spreads(before, after) -> list\n--\n\n"
     "Return each limb's spread (mm) over the frames between two sums of moments.");
@@ -891,22 +974,18 @@ PyDoc_STRVAR(left_arm_acts_doc,
     "Tell whether of all limbs the left arm moves most over the frames between two sums, and clearly more than the right.");
 static PyObject *left_arm_acts(PyObject *module, PyObject *args)
 {
-    enum { RIGHT_ARM, LEFT_ARM };
     Py_buffer b[2];
     Py_ssize_t first;
-    double jitter_mm, factor, of[LIMBS], most;
+    double jitter_mm, factor;
     if (!PyArg_ParseTuple(args, "y*y*ndd", &b[0], &b[1], &first, &jitter_mm, &factor))
         return NULL;
     const size_t least = (first + LIMBS * MOMENTS) * sizeof(int64_t), bytes[2] = {least, least};
     if (!are_long_enough(b, bytes, 2))
         return released(b, 2);
-    spreads_between((const int64_t *)b[0].buf + first, (const int64_t *)b[1].buf + first, of);
+    int acts = left_arm_moves_most((const int64_t *)b[0].buf + first, (const int64_t *)b[1].buf + first, jitter_mm, factor);
     PyBuffer_Release(&b[0]);
     PyBuffer_Release(&b[1]);
-    most = of[0];
-    for (int limb = 1; limb < LIMBS; limb++)
-        most = of[limb] > most ? of[limb] : most;
-    return PyBool_FromLong(most == of[LEFT_ARM] && most + jitter_mm > factor * (of[RIGHT_ARM] + jitter_mm));
+    return PyBool_FromLong(acts);
 }
 
 VECTORISED static void excess_over_contrast(const float *scores, float least, float contrast, float *out, Py_ssize_t units)
@@ -1456,6 +1535,7 @@ static PyMethodDef methods[] = {
     {"exponents", exponents, METH_VARARGS, exponents_doc},
     {"interpolated", interpolated, METH_VARARGS, interpolated_doc},
     {"left_arm_acts", left_arm_acts, METH_VARARGS, left_arm_acts_doc},
+    {"plain_joints_or", (PyCFunction)(void (*)(void))plain_joints_or, METH_FASTCALL, plain_joints_or_doc},
     {"pooled", pooled, METH_VARARGS, pooled_doc},
     {"pooled_windows", pooled_windows, METH_VARARGS, pooled_windows_doc},
     {"posture", posture, METH_VARARGS, posture_doc},

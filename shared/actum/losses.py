@@ -3,7 +3,7 @@
 from bisect import bisect_left, bisect_right
 from collections import deque
 from collections.abc import Iterable, Iterator
-from operator import attrgetter
+from itertools import pairwise
 from typing import Generic, Protocol, TypeVar
 
 from actum.node import SECOND_NS
@@ -26,7 +26,6 @@ class Stamped(Protocol):
 
 
 S = TypeVar("S", bound=Stamped)
-_stamp_ns = attrgetter("stamp_ns")
 
 
 class StreamBuffer(Generic[S]):
@@ -39,6 +38,7 @@ class StreamBuffer(Generic[S]):
     def __init__(self, memory_ns: int) -> None:
         self._memory_ns = memory_ns
         self._samples: list[S] = []
+        self._stamps_ns: list[int] = []
         self._answered: deque[range] = deque(maxlen=MOST_ANSWERED)
 
     def __len__(self) -> int:
@@ -50,7 +50,7 @@ class StreamBuffer(Generic[S]):
     @property
     def newest_ns(self) -> int:
         """Stamp of the newest sample, -1 where there is none."""
-        return self._samples[-1].stamp_ns if self._samples else -1
+        return self._stamps_ns[-1] if self._stamps_ns else -1
 
     @property
     def newest(self) -> S | None:
@@ -60,25 +60,36 @@ class StreamBuffer(Generic[S]):
     def append(self, sample: S) -> None:
         """Add the next sample, and forget the samples that are too old."""
         self._samples.append(sample)
+        self._stamps_ns.append(sample.stamp_ns)
         oldest_ns = sample.stamp_ns - self._memory_ns
-        if self._samples[0].stamp_ns < oldest_ns:
-            del self._samples[: bisect_left(self._samples, oldest_ns, key=_stamp_ns)]
+        if self._stamps_ns[0] < oldest_ns:
+            self._let_go(bisect_left(self._stamps_ns, oldest_ns))
 
     def let_go(self) -> None:
         """Forget the oldest sample."""
-        del self._samples[0]
+        self._let_go(1)
+
+    def _let_go(self, count: int) -> None:
+        del self._samples[:count], self._stamps_ns[:count]
 
     def clear(self) -> None:
         """Forget everything, after a restart of the stream."""
         self._samples.clear()
+        self._stamps_ns.clear()
         self._answered.clear()
 
     def between(self, start_ns: int, end_ns: int) -> list[S]:
         """List the samples with start <= stamp <= end, in order."""
-        first = bisect_left(self._samples, start_ns, key=_stamp_ns)
+        first = bisect_left(self._stamps_ns, start_ns)
         if end_ns >= self.newest_ns:
             return self._samples[first:]
-        return self._samples[first : bisect_right(self._samples, end_ns, lo=first, key=_stamp_ns)]
+        return self._samples[first : bisect_right(self._stamps_ns, end_ns, lo=first)]
+
+    def is_dense(self, start_ns: int, end_ns: int) -> bool:
+        """Tell whether nowhere in a segment samples are further apart than a lost part that hardly matters."""
+        first = bisect_left(self._stamps_ns, start_ns)
+        stamps_ns = [start_ns, *self._stamps_ns[first : bisect_right(self._stamps_ns, end_ns, lo=first)], end_ns]
+        return all(then_ns - before_ns <= LOST_NS for before_ns, then_ns in pairwise(stamps_ns))
 
     def mark_answered(self, start_ns: int, end_ns: int) -> None:
         """Remember that a segment has been answered, so that its later samples are too late."""

@@ -104,7 +104,7 @@ class Looking:
     def __init__(self, model: PyramidModel) -> None:
         self.model, self.seen = model, [(0, 0)]
 
-    def pooled(self, frames: Sequence[Frame], firsts: Sequence[int]) -> list[np.ndarray]:
+    def pooled(self, frames: Sequence[Frame], firsts: Sequence[int]) -> np.ndarray:
         self.seen += [(frames[first].stamp_ns, frames[-1].stamp_ns) for first in firsts]
         return self.model.pooled(frames, firsts)
 
@@ -208,7 +208,7 @@ def test_heads_without_the_only_fold_answer_nothing_and_equal_windows_their_mean
     (without,) = fit_heads(vectors, targets, np.zeros(40, np.intp), [0], 0.4)
     assert not without.axes.any() and not without.offsets.any()
     (same,) = fit_heads(np.ones((4, 6), np.float32), targets[:4], np.array([0, 1, 0, 1]), [None], 0.4)
-    np.testing.assert_allclose(same.completeness(np.ones(6, np.float32)), targets[:4].mean(axis=0), rtol=1e-5)
+    np.testing.assert_allclose(same.completeness(np.ones((1, 6), np.float32))[0], targets[:4].mean(axis=0), rtol=1e-5)
 
 
 @given(seed=st.integers(0, 2**32 - 1), share=st.floats(0.0, 1.0))

@@ -4,13 +4,14 @@ import math
 from collections.abc import Callable
 from dataclasses import fields
 from pathlib import Path
-from typing import TypeVar
+from typing import Annotated, TypeVar
 
 import numpy as np
 import pytest
 from benchmarks.rig.numpy_alone import numpy_alone
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pydantic import Field, TypeAdapter, ValidationError
 
 from action_fusion.intake.buffers import Hands
 from action_fusion.tracks.comotion import Comotion, comotion
@@ -22,6 +23,7 @@ from actum.arrays import Array, Mask, joints_to_array
 from actum.core import steps
 from actum.geometry import DegenerateError
 from actum.messages import Joint, Posture
+from actum.messages.base import Joints
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 from people import FRAME_NS, STANDING, skeleton
@@ -97,6 +99,26 @@ def test_postures_agree(seed: int, lacking: float, up: list[float] | None) -> No
 NUMBERS = st.sampled_from([0.0, -0.5, 0.3, 1e-300, 99.0, 101.0, -1e300, math.inf, math.nan])
 
 
+PLAIN = TypeAdapter(Annotated[list[Joint], Field(min_length=15, max_length=15)], config={"strict": True})
+POINTS = st.none() | st.lists(NUMBERS | st.sampled_from([1, True, "0.5", None]), min_size=2, max_size=4)
+
+
+def validated(adapter: TypeAdapter[list[Joint]], value: object) -> str | None:
+    """What is valid, or None where nothing is; as text, in which NaN equals itself and 1.0 is not 1."""
+    try:
+        return repr(adapter.validate_python(value))
+    except ValidationError:
+        return None
+
+
+PLAIN_POINTS = st.lists(st.none() | st.lists(NUMBERS, min_size=3, max_size=3), min_size=15, max_size=15)
+
+
+@given(PLAIN_POINTS | st.lists(POINTS, min_size=14, max_size=16) | st.tuples(*[POINTS] * 15))
+def test_the_same_joints_are_valid_and_of_the_same_value(joints: object) -> None:
+    assert validated(TypeAdapter(Joints, config={"strict": True}), joints) == validated(PLAIN, joints)
+
+
 @pytest.mark.filterwarnings("ignore:invalid value")
 @given(
     st.lists(st.none() | st.lists(NUMBERS, min_size=3, max_size=3), min_size=15, max_size=15),
@@ -138,9 +160,7 @@ def test_a_frame_adds_the_same_to_all_sums(seed: int) -> None:
         assert compiled.kinematics is not None and plain.kinematics is not None
         of_both = [(each.kinematics.posture, each.kinematics.velocity) for each in (compiled, plain) if each.kinematics]
         np.testing.assert_allclose(*of_both, rtol=0, atol=ROUNDING_M)
-        added = [
-            np.stack(frame.activity.after.sums) - np.stack(frame.activity.before.sums) for frame in (compiled, plain)
-        ]
+        added = [frame.activity.after - frame.activity.before for frame in (compiled, plain)]
         assert np.abs(added[0].astype(np.int64) - added[1].astype(np.int64)).max() <= 1
         totals = [frame.activity.totals_after - frame.activity.totals_before for frame in (compiled, plain)]
         assert np.abs(totals[0] - totals[1]).max() <= 1
@@ -303,6 +323,20 @@ def pooled_by(spans: list[list[int]], frames: int = 2) -> None:
     steps.pooled(sums, travelled_um, np.array(spans), *cells, 1.0, np.empty(3, np.float32))
 
 
+def pool_windows(rows: list[int], firsts: list[int]) -> None:
+    """Pool windows of frames before which are these rows of a run of three, as one cell of three units."""
+    run = np.zeros((3, 2, 3), np.uint32), np.zeros((3, 40), np.int64)
+    cells = np.array([0.0, 1.0]), np.array([0], np.int32), np.array([1], np.int32)
+    steps.pooled_windows([(run, row) for row in rows], firsts, True, 1.0, 1.0, *cells, 1.0, np.empty(3, np.float32))
+
+
+def add_frame(row: int) -> None:
+    """Add a frame to the sums in a row of a run of three."""
+    activities, frame = np.zeros((2, 4), np.float32), (ZEROS, ZEROS, ZEROS, ZEROS, ZEROS, ZEROS)
+    sums, totals = np.zeros((3, 2, 4), np.uint32), np.zeros((3, 40), np.int64)
+    steps.added(activities, np.ones(4, np.float32), 1.0, *frame, 1e-9, sums, totals, row)
+
+
 @pytest.mark.parametrize(
     "call",
     [
@@ -333,7 +367,13 @@ def pooled_by(spans: list[list[int]], frames: int = 2) -> None:
         lambda: compare(np.zeros((9, 3)), np.zeros((1, 3)), np.empty(72), np.empty(27, np.bool_)),
         lambda: compare(np.zeros((9, 3)), np.zeros((2, 3)), np.empty(71), np.empty(27, np.bool_)),
         lambda: compare(np.zeros((9, 3)), np.zeros((2, 3)), np.empty(72), np.empty(26, np.bool_)),
-        lambda: steps.pooled_windows([], [0], [False], ZEROS, b"", b"", 1.0, np.empty(3, np.float32)),
+        lambda: pool_windows([], [0]),
+        lambda: pool_windows([0, 1], [2]),
+        lambda: pool_windows([0, 1], [-1]),
+        lambda: pool_windows([0, 2], [0]),
+        lambda: pool_windows([-1], [0]),
+        lambda: add_frame(row=2),
+        lambda: add_frame(row=-1),
     ],
 )
 def test_arrays_that_are_too_short_are_refused_before_anything_is_read(call: Callable[[], object]) -> None:

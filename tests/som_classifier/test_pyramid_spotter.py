@@ -28,9 +28,9 @@ class Scripted:
     def __init__(self, answers: Answers) -> None:
         self._answers = answers
 
-    def pooled(self, frames: Sequence[Frame], firsts: Sequence[int]) -> list[NDArray[np.float32]]:
+    def pooled(self, frames: Sequence[Frame], firsts: Sequence[int]) -> NDArray[np.float32]:
         bounds = [(frames[first].stamp_ns // MS, frames[-1].stamp_ns // MS) for first in firsts]
-        return [np.array([self._answers.get(each, 0.0)], np.float32) for each in bounds]
+        return np.array([[self._answers.get(each, 0.0)] for each in bounds], np.float32)
 
 
 def spotted(

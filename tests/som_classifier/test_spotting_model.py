@@ -53,7 +53,7 @@ def test_whatever_a_head_answers_what_is_done_is_a_share(answer: float) -> None:
 
 def test_heads_answer_by_their_axes_and_offsets() -> None:
     heads = CompletenessHeads(np.array([[1, 0], [0, 2], [1, 1]], np.float32), np.array([0.5, -1], np.float32))
-    assert heads.completeness(np.array([1, 2, 3], np.float32)).tolist() == [4.5, 6.0]
+    assert heads.completeness(np.array([[1, 2, 3]], np.float32)).tolist() == [[4.5, 6.0]]
 
 
 def test_a_usual_duration_costs_nothing_and_an_unusual_one_up_to_a_limit() -> None:

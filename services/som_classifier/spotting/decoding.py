@@ -64,6 +64,8 @@ class Decoder:
         """Take the candidates that end now; return those that are decided thereby, in order."""
         remembered = [each for each in self._pending if each.end_ns >= now_ns - self.memory_ns]
         self._pending = [each for each in (*remembered, *candidates) if self.is_free(each.start_ns, each.end_ns)]
+        if not self._pending:
+            return []
         decided = [each for each in best_set(self._pending) if each.end_ns <= now_ns - self.lag_ns]
         starts_ns = [max(each.start_ns, self._decided_ns + 1) for each in decided]
         if decided:

@@ -2,7 +2,6 @@
 
 from bisect import bisect_left
 from collections.abc import Callable, Sequence
-from operator import attrgetter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,7 @@ from actum.losses import StreamBuffer
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
 from som_classifier.kinematics import GAP_NS
+from som_classifier.spotting.decoding import Candidate
 from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, Spotter, SpottingOptions
 from som_classifier.spotting.spotting_model import SpottingModel, iou_of_completeness
 
@@ -18,18 +18,15 @@ LEAST_PROBABILITY = 0.5
 """Probability from which an action is said to be going on: that it is must be likelier than that it is not."""
 
 
-Pool = Callable[[Sequence[Frame], Sequence[int]], Sequence[NDArray[np.float32]]]
-"""Returns the pyramid vectors (inputs,) of windows of valid frames, each with the activity that the model's encoder
-gave: the windows begin at the frames of these indices and end with the last one."""
+Pool = Callable[[Sequence[Frame], Sequence[int]], NDArray[np.float32]]
+"""Returns the pyramid vectors (windows, inputs) of windows of valid frames, each with the activity that the model's
+encoder gave: the windows begin at the frames of these indices and end with the last one."""
 
 
 FEWEST_FRAMES = 4
 """Frames that a window needs: with fewer the pyramid's finest cells hold less than one each."""
 COVERED_SHARE = 0.8
 """Share of a duration over which there must be frames: after a gap longer windows come back one after the other."""
-
-
-_stamp_ns = attrgetter("stamp_ns")
 
 
 class RecentFrames(StreamBuffer[Frame]):
@@ -57,34 +54,31 @@ class RecentFrames(StreamBuffer[Frame]):
 
         The shortest window comes first.
         """
-        frames = self.between(self.newest_ns - self._durations_ns[-1], self.newest_ns)
-        newest_ns, firsts = self.newest_ns, []
+        stamps_ns, newest_ns, firsts = self._stamps_ns, self.newest_ns, []
+        oldest = bisect_left(stamps_ns, newest_ns - self._durations_ns[-1])
         for duration_ns in self._durations_ns:
-            first = bisect_left(frames, newest_ns - duration_ns, key=_stamp_ns)
-            long_enough = newest_ns - frames[first].stamp_ns >= COVERED_SHARE * duration_ns
-            if len(frames) - first >= FEWEST_FRAMES and long_enough:
-                firsts.append(first)
-        return frames, firsts
+            first = bisect_left(stamps_ns, newest_ns - duration_ns, oldest)
+            long_enough = newest_ns - stamps_ns[first] >= COVERED_SHARE * duration_ns
+            if len(stamps_ns) - first >= FEWEST_FRAMES and long_enough:
+                firsts.append(first - oldest)
+        return self._samples[oldest:], firsts
 
 
 class PoolingOnce:
-    """Pools each window of a frame once, however many searches of one stream look at it."""
+    """Pools the windows of a frame once, however many searches of one stream look at them."""
 
     def __init__(self, pool: Pool) -> None:
         self._pool = pool
         self._newest: Frame | None = None
-        self._vectors: dict[int, NDArray[np.float32]] = {}
+        self._starts_ns: list[int] = []
+        self._vectors = np.empty((0, 0), np.float32)
 
-    def __call__(self, frames: Sequence[Frame], firsts: Sequence[int]) -> list[NDArray[np.float32]]:
-        """Return the pyramid vectors (inputs,) of windows that end with the last of these frames."""
-        if self._newest is not frames[-1]:
-            self._newest, self._vectors = frames[-1], {}
+    def __call__(self, frames: Sequence[Frame], firsts: Sequence[int]) -> NDArray[np.float32]:
+        """Return the pyramid vectors of windows that end with the last of these frames, (windows, inputs)."""
         starts_ns = [frames[first].stamp_ns for first in firsts]
-        new = {
-            start_ns: first for start_ns, first in zip(starts_ns, firsts, strict=True) if start_ns not in self._vectors
-        }
-        self._vectors |= zip(new, self._pool(frames, list(new.values())), strict=True)
-        return [self._vectors[start_ns] for start_ns in starts_ns]
+        if self._newest is not frames[-1] or self._starts_ns != starts_ns:
+            self._newest, self._starts_ns, self._vectors = frames[-1], starts_ns, self._pool(frames, firsts)
+        return self._vectors
 
 
 class PyramidSpotter(Spotter):
@@ -129,24 +123,31 @@ class PyramidSpotter(Spotter):
         if not firsts:
             self._ongoing = None
             return NOTHING
-        starts_ns = np.array([frames[first].stamp_ns for first in firsts])
-        completeness = np.stack([self._learned.heads.completeness(vector) for vector in self._pool(frames, firsts)])
-        ends_ns = np.full(len(firsts), now_ns)
-        candidates = self._learned.candidates(starts_ns, ends_ns, completeness, self._threshold)
-        decided = self._decoder.step(now_ns, candidates)
-        self._ongoing = self._likeliest(starts_ns.tolist(), now_ns, completeness)
+        starts_ns = [frames[first].stamp_ns for first in firsts]
+        completeness = self._learned.heads.completeness(self._pool(frames, firsts))
+        decided = self._decoder.step(now_ns, self._candidates(starts_ns, now_ns, completeness))
+        self._ongoing = self._likeliest(starts_ns, now_ns, completeness)
         segments = []
         for each in decided:
             first = self._recent.between(each.start_ns, each.end_ns)[0]
             segments.append(SpottedSegment(first.stamp_ns, each.end_ns, self._labels[each.action]))
         return Spotted(tuple(segments), self._ongoing)
 
+    def _candidates(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> list[Candidate]:
+        """Return the windows that may be actions: none is worth more than it is complete."""
+        likely = np.flatnonzero(completeness.max(axis=1) > self._threshold)
+        if not len(likely):
+            return []
+        starting_ns, ending_ns = np.array(starts_ns)[likely], np.full(len(likely), now_ns)
+        return self._learned.candidates(starting_ns, ending_ns, completeness[likely], self._threshold)
+
     def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
         """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""
         free = [n for n, start_ns in enumerate(starts_ns) if self._decoder.is_free(start_ns, now_ns)]
         if not free:
             return None
-        window = max(free, key=lambda n: float(completeness[n].max()))
+        most: list[float] = completeness.max(axis=1).tolist()
+        window = max(free, key=most.__getitem__)
         action = int(completeness[window].argmax())
         answer = float(completeness[window, action])
         probability = self._learned.probability(answer)

@@ -56,9 +56,12 @@ class CompletenessHeads:
     axes: NDArray[np.float32]
     offsets: NDArray[np.float32]
 
-    def completeness(self, vector: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Return each head's answer to a pyramid vector (inputs,): about 0 to 1, shape (actions,)."""
-        completeness: NDArray[np.float32] = row_matmul(vector, self._axes_in_turn) + self.offsets
+    def completeness(self, vectors: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return each head's answer to each of some pyramid vectors (n, inputs): about 0 to 1, shape (n, actions)."""
+        completeness = np.empty((len(vectors), len(self.offsets)), np.float32)
+        for answers, vector in zip(completeness, vectors, strict=True):
+            answers[:] = row_matmul(vector, self._axes_in_turn)
+        completeness += self.offsets
         return completeness
 
     @cached_property

@@ -4,7 +4,17 @@ import math
 from functools import cache
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, FiniteFloat
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
+
+from actum.core import steps
 
 Stamp = Annotated[int, Field(ge=0, lt=2**62)]
 Seq = Annotated[int, Field(ge=0, lt=2**40)]
@@ -12,7 +22,18 @@ Count = Annotated[int, Field(ge=0, lt=2**62)]
 AgentId = Annotated[int, Field(ge=0, lt=2**31)]
 Point = Annotated[list[float], Field(min_length=3, max_length=3)]
 Joint = Point | None
-Joints = Annotated[list[Joint], Field(min_length=15, max_length=15)]
+
+
+def _validated(value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
+    """Have pydantic validate a value, as the compiled step does with what is not valid as it is."""
+    return validate(value)
+
+
+Joints = Annotated[
+    list[Joint],
+    Field(min_length=15, max_length=15),
+    WrapValidator(_validated if steps is None else steps.plain_joints_or),
+]
 FinitePoint = Annotated[list[FiniteFloat], Field(min_length=3, max_length=3)]
 Quaternion = Annotated[list[FiniteFloat], Field(min_length=4, max_length=4)]
 Transform = Annotated[list[FiniteFloat], Field(min_length=16, max_length=16)]

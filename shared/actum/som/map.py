@@ -36,7 +36,7 @@ class Som(Codebook):
     """
 
     @classmethod
-    def random(cls, rows: int, cols: int, dim: int, rng: np.random.Generator, dtype: DTypeLike = np.float64) -> Self:
+    def random(cls, rows: int, cols: int, dim: int, rng: "np.random.Generator", dtype: DTypeLike = np.float64) -> Self:
         """Make an untrained map of inputs (dim,), all weights drawn from U(0, 1).
 
         Raises:
@@ -59,7 +59,7 @@ class Som(Codebook):
         return cls(rows, cols, _linear_weights(inputs, rows, cols).astype(inputs.dtype))
 
     def train(
-        self, vectors: ArrayLike, steps: int, schedule: Decay, rng: np.random.Generator, report: Report = silent
+        self, vectors: ArrayLike, steps: int, schedule: Decay, rng: "np.random.Generator", report: Report = silent
     ) -> Self:
         """Return the map after `steps` sequential adaptations to randomly chosen rows of (n, dim).
 
