@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from contextlib import AbstractContextManager
 
 from actum import keys
-from actum.messages import Image, Message
+from actum.messages import Continuation, Image, Message
 from actum.node import Counters, Tick
 from actum.runtime import Client
 from web_dashboard.application import application
@@ -36,6 +36,7 @@ class WebDashboard:
         keys.HELD_BACK,
         keys.EVENT,
         keys.INTENT,
+        keys.CONTINUATION,
         keys.STATUS,
         keys.TRAINING,
     )
@@ -67,7 +68,7 @@ class WebDashboard:
                 self.counters.reject("refused_browser", self._orders.refused.popleft())
             if self._hub.left_out:
                 self.counters.counts["left_out"] = self._hub.left_out
-        elif self._hub.watched or not isinstance(message, Image):
+        elif self._hub.watched or not isinstance(message, Image | Continuation):
             self._hub.publish(envelope_of(message))
         return ()
 

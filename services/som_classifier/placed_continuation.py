@@ -1,0 +1,59 @@
+"""Puts a continuation where the person is: postures of a standard body become joints in the camera frame."""
+
+import numpy as np
+
+from actum.arrays import Array, joints_to_array, joints_to_list
+from actum.geometry import apply, from_flat, invert
+from actum.messages import Continuation, Posture, PostureAhead
+from actum.skeletons import INDEX
+from actum.standard_body import bones_of, in_own_size
+from som_classifier.continuation import HORIZONS_S
+from som_classifier.frames import Frame
+
+MOVES_M = 0.06
+"""A person moves if a joint is expected so far (m) from where it is now: noise and sway of one who stands are less."""
+
+
+def continuation_of(ahead: Array, newest: Frame, posture: Posture) -> Continuation | None:
+    """Return the message about how a posture goes on; None where the person is expected to stay as they are.
+
+    Args:
+        ahead: (3, 15, 3), the postures after `HORIZONS_S`, upright, scaled, metres; NaN where a joint is missing.
+        newest: the valid frame of the posture.
+        posture: as it was received.
+    """
+    assert newest.upright is not None
+    if np.nanmax(np.linalg.norm(ahead - newest.upright, axis=2)) < MOVES_M:
+        return None
+    return Continuation.of_checked(
+        stamp_ns=posture.stamp_ns,
+        sensor=posture.sensor,
+        agent=posture.agent,
+        ahead=[
+            PostureAhead(ahead_s=ahead_s, joints_m=joints_to_list(joints_m))
+            for ahead_s, joints_m in zip(HORIZONS_S, in_camera(ahead, newest, posture), strict=True)
+        ],
+        session_id=posture.session_id,
+    )
+
+
+def in_camera(ahead: Array, newest: Frame, posture: Posture) -> Array:
+    """Return the postures `ahead` in the camera frame (m), (3, 15, 3), the torso where it is now."""
+    assert newest.upright is not None and posture.joints_m is not None and posture.ego_from_camera is not None
+    camera_from_ego = invert(from_flat(posture.ego_from_camera))
+    now_m = apply(camera_from_ego, joints_to_array(posture.joints_m))
+    camera_from_upright = rotation_between(bones_of(newest.upright)[0], bones_of(now_m)[0])
+    joints_m: Array = now_m[INDEX["torso"]] + in_own_size(ahead, now_m) @ camera_from_upright.T
+    return joints_m
+
+
+def rotation_between(bones_a: Array, bones_b: Array) -> Array:
+    """Return the rotation b_from_a (3, 3) between the same bones (14, 3) in two frames (Kabsch 1976).
+
+    Their lengths may differ; bones that are NaN in either frame are left out.
+    """
+    known = ~np.isnan(bones_a[:, 0] + bones_b[:, 0])
+    left, _, right = np.linalg.svd(bones_b[known].T @ bones_a[known])
+    left[:, 2] *= np.linalg.det(left @ right)
+    rotation: Array = left @ right
+    return rotation
