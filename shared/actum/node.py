@@ -108,8 +108,8 @@ class OnDemand(Protocol):
 
     Attributes:
         on_demand: the topic.
-        is_demanded: whether somebody listens. The runtime says so with each tick; before the first one it is true, so
-            that a replay yields everything. Nothing that the node puts on other topics depends on it.
+        is_demanded: whether somebody listens. True at first, so that a replay yields everything; the runtime changes it
+            before each tick. Nothing that the node puts on other topics depends on it.
     """
 
     on_demand: keys.Topic

@@ -97,6 +97,8 @@ class NodeService(StepService):
         super().__init__(node, settings)
         self._node = node
         self._resumption = resumption
+        if isinstance(node, OnDemand):
+            node.is_demanded = False
 
     @property
     def is_busy(self) -> bool:
