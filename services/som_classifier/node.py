@@ -15,7 +15,7 @@ from som_classifier.frames import Frame
 from som_classifier.model import Model, Recognition
 from som_classifier.model_loading import WatchedModel
 from som_classifier.model_maps import MapDescription, NoMapsError, map_description
-from som_classifier.placed_continuation import continuation_of
+from som_classifier.placed_continuation import continuation_of, moves
 from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import ClosedSegment, OpenSegment
@@ -177,9 +177,8 @@ class SomClassifier:
         if not self.is_demanded or not posture.agent or not newest.valid or model is None or model.continuation is None:
             return
         frames = [frame for frame in stream.between(newest.stamp_ns - LOOKED_BACK_NS, newest.stamp_ns) if frame.valid]
-        continued = continuation_of(model.continuation.ahead(frames), newest, posture)
-        if continued is not None:
-            yield continued
+        if moves(frames):
+            yield continuation_of(model.continuation.ahead(frames), newest, posture)
 
     def _partial(self, segment: OpenSegment, stream: Stream, posture: Posture) -> Iterator[Action]:
         seen = stream.stretch(segment.start_ns or 0, posture.stamp_ns)

@@ -85,10 +85,20 @@ def test_a_joint_beyond_a_missing_one_is_not_expected_anywhere() -> None:
     assert np.flatnonzero(np.isnan(expected[:, 0])).tolist() == [ELBOW, HAND]
 
 
-def test_nothing_is_put_of_who_stands() -> None:
+@pytest.mark.parametrize("kind", KINDS)
+def test_nothing_is_put_of_who_stands(kind: str) -> None:
     rng = np.random.default_rng(0)
-    still = [skeleton(i * FRAME_NS, STANDING + rng.normal(0, 0.003, (15, 3))) for i in range(FRAMES)]
-    assert put(postures_of(still)) == []
+    still = [skeleton(i * FRAME_NS, STANDING + rng.normal(0, 0.005, (15, 3))) for i in range(3 * FRAMES)]
+    assert put(postures_of(still), continued(kind)) == []
+
+
+def test_who_has_stopped_is_continued_for_half_a_second() -> None:
+    """The hand turns by 2 rad/s for 0.8 s; it is seen to have stopped a little later."""
+    rng, stamps_ns = np.random.default_rng(0), range(0, 90 * FRAME_NS, FRAME_NS)
+    turned = [turning_forearm(2 * min(stamp_ns / SECOND_NS, 0.8)) for stamp_ns in stamps_ns]
+    noisy = [joints + rng.normal(0, 0.001, (15, 3)) for joints in turned]
+    frames = [skeleton(stamp_ns, joints) for stamp_ns, joints in zip(stamps_ns, noisy, strict=True)]
+    assert 1.3 <= put(postures_of(frames))[-1].stamp_ns / SECOND_NS < 1.8
 
 
 @pytest.mark.parametrize("kind", KINDS)
