@@ -14,7 +14,7 @@ from som_classifier.frames import Frame
 from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 
 MOVES_MPS = 0.2
-"""Speed (m/s) of some joint from which a person moves: a sensor's noise and the sway of one who stands are slower mostly.
+"""Speed (m/s) of some joint from which a person moves: a sensor's noise and the sway of one who stands are mostly less.
 Chosen on simulated people 91, 92, 100 and 101."""
 
 
