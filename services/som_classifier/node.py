@@ -29,7 +29,6 @@ Fate = WhyHeldBack | Literal["told", "marked"]
 POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
 
-
 MARKS_OFF = "marks are not used: the classifier's setting segments is auto"
 """Why marks are rejected where only found segments are wanted."""
 LIVE = (
@@ -173,12 +172,16 @@ class SomClassifier:
 
     def _continued(self, stream: Stream, newest: Frame, posture: Posture) -> Iterator[Continuation]:
         """Say how the posture goes on, if somebody wants to know: that depends on postures alone, not on marks."""
-        model = self._model
-        if not self.is_demanded or not posture.agent or not newest.valid or model is None or model.continuation is None:
+        going_on = None if self._model is None else self._model.continuation
+        if not self.is_demanded or not posture.agent or not newest.valid or going_on is None:
             return
         frames = [frame for frame in stream.between(newest.stamp_ns - LOOKED_BACK_NS, newest.stamp_ns) if frame.valid]
-        if moves(frames):
-            yield continuation_of(model.continuation.ahead(frames), newest, posture)
+        if not moves(frames):
+            return
+        if (continued := continuation_of(going_on.ahead(frames), newest, posture)) is not None:
+            yield continued
+        else:
+            self.counters.reject("bad_posture", f"no usable place of agent {posture.agent} at {posture.stamp_ns}")
 
     def _partial(self, segment: OpenSegment, stream: Stream, posture: Posture) -> Iterator[Action]:
         seen = stream.stretch(segment.start_ns or 0, posture.stamp_ns)

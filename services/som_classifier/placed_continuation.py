@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from actum.arrays import Array, joints_to_array, joints_to_list
-from actum.geometry import apply, from_flat, invert
+from actum.geometry import apply, from_flat, invert, is_rigid
+from actum.limits import MAX_COORDINATE_M
 from actum.messages import Continuation, Posture, PostureAhead
 from actum.skeletons import INDEX
 from actum.standard_body import bones_of, in_own_size
@@ -24,31 +25,46 @@ def moves(frames: Sequence[Frame]) -> bool:
     return bool((np.square(velocities).sum(axis=2) >= (MOVES_MPS * LAG_TIME_CONSTANT_S) ** 2).any())
 
 
-def continuation_of(ahead: Array, newest: Frame, posture: Posture) -> Continuation:
-    """Return the message about how a posture goes on.
+def continuation_of(ahead: Array, newest: Frame, posture: Posture) -> Continuation | None:
+    """Return the message about how a posture goes on; None where the person's place is not usable.
 
     Args:
         ahead: (3, 15, 3), the postures after `HORIZONS_S`, upright, scaled, metres; NaN where a joint is missing.
         newest: the valid frame of the posture.
         posture: as it was received.
     """
+    now_m = joints_in_camera(posture)
+    if now_m is None:
+        return None
     return Continuation.of_checked(
         stamp_ns=posture.stamp_ns,
         sensor=posture.sensor,
         agent=posture.agent,
         ahead=[
             PostureAhead(ahead_s=ahead_s, joints_m=joints_to_list(joints_m))
-            for ahead_s, joints_m in zip(HORIZONS_S, in_camera(ahead, newest, posture), strict=True)
+            for ahead_s, joints_m in zip(HORIZONS_S, in_camera(ahead, newest, now_m), strict=True)
         ],
         session_id=posture.session_id,
     )
 
 
-def in_camera(ahead: Array, newest: Frame, posture: Posture) -> Array:
-    """Return the postures `ahead` in the camera frame (m), (3, 15, 3), the torso where it is now."""
-    assert newest.upright is not None and posture.joints_m is not None and posture.ego_from_camera is not None
-    camera_from_ego = invert(from_flat(posture.ego_from_camera))
-    now_m = apply(camera_from_ego, joints_to_array(posture.joints_m))
+def joints_in_camera(posture: Posture) -> Array | None:
+    """Return the joints in the camera frame (m), (15, 3), NaN where missing or absurd; None without frame or torso."""
+    if posture.joints_m is None or posture.ego_from_camera is None:
+        return None
+    ego_from_camera, joints_m = from_flat(posture.ego_from_camera), joints_to_array(posture.joints_m)
+    joints_m[~(np.abs(joints_m) < MAX_COORDINATE_M).all(axis=1)] = np.nan
+    if not is_rigid(ego_from_camera, MAX_COORDINATE_M) or np.isnan(joints_m[INDEX["torso"], 0]):
+        return None
+    return apply(invert(ego_from_camera), joints_m)
+
+
+def in_camera(ahead: Array, newest: Frame, now_m: Array) -> Array:
+    """Return the postures `ahead` in the camera frame (m), (n, 15, 3), of a person whose joints (15, 3) are there now.
+
+    The torso stays where it is.
+    """
+    assert newest.upright is not None
     camera_from_upright = rotation_between(bones_of(newest.upright)[0], bones_of(now_m)[0])
     joints_m: Array = now_m[INDEX["torso"]] + in_own_size(ahead, now_m) @ camera_from_upright.T
     return joints_m

@@ -22,7 +22,7 @@ from som_classifier.frames import frame_of
 from som_classifier.kinematics import KinematicsFilter
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
-from som_classifier.placed_continuation import in_camera
+from som_classifier.placed_continuation import in_camera, joints_in_camera
 from wire import Wire, without_seq
 
 Joints = NDArray[np.float64]
@@ -53,8 +53,9 @@ def in_place(joints: Joints, up_in_camera: Sequence[float] | None = None) -> Joi
     seen = skeleton(0, joints).model_copy(update={"up_in_camera": up_in_camera})
     [posture] = postures_of([seen])
     frame = frame_of(posture, 0, KinematicsFilter())
-    assert frame.upright is not None
-    return in_camera(frame.upright[None], frame, posture)[0]
+    now_m = joints_in_camera(posture)
+    assert frame.upright is not None and now_m is not None
+    return in_camera(frame.upright[None], frame, now_m)[0]
 
 
 def test_joints_are_expected_where_they_get_at_their_speed() -> None:
@@ -143,3 +144,32 @@ def test_a_model_that_was_not_trained_for_it_puts_none() -> None:
 @pytest.mark.parametrize("fields", [{"agent": 0}, {"valid": False, "reason": "lost", "joints_m": None}])
 def test_nobody_known_and_no_valid_posture_give_none(fields: dict[str, object]) -> None:
     assert put([each.model_copy(update=fields) for each in postures_of(reaches(FRAMES))]) == []
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [
+        {"joints_m": None},
+        {"joints_m": [[np.inf, 0.0, 0.0]] * 15},
+        {"ego_from_camera": None},
+        {"ego_from_camera": [1e308] * 16},
+        {"ego_from_camera": [0.0] * 16},
+    ],
+    ids=["no joints_m", "infinite joints", "no frame", "a huge frame", "a frame of zeros"],
+)
+def test_a_person_whose_place_is_unusable_is_counted_and_not_continued(fields: dict[str, object]) -> None:
+    wire = Wire(SomClassifier(at_this_speed()))
+    sent = [each.model_copy(update=fields) for each in postures_of(reaches(FRAMES))]
+    assert not any(isinstance(output, Continuation) for output in wire.send(*sent))
+    assert wire.rejects > FRAMES // 2
+    assert "no usable place" in (wire.node.counters.last_error or "")
+
+
+def test_an_absurd_joint_is_left_out_alone() -> None:
+    absurd = []
+    for posture in postures_of(reaches(FRAMES)):
+        joints = [*(posture.joints_m or [])]
+        joints[HAND] = [1e9, 0.0, 0.0]
+        absurd.append(posture.model_copy(update={"joints_m": joints}))
+    last = put(absurd)[-1].ahead[-1].joints_m
+    assert [number for number, joint in enumerate(last) if joint is None] == [HAND]

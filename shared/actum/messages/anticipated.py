@@ -73,7 +73,7 @@ class PostureAhead(Model):
 
 
 class Continuation(Message):
-    """How a person's posture goes on: one for each posture of a person who moves, or did so half a second before.
+    """How a person's posture goes on: one for each posture of a person who moves or has moved in the last half second.
 
     Put only while somebody listens, and only by a classifier whose model was trained with `--continue`.
     """
