@@ -5,8 +5,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum import keys
-from actum.messages import Action, Intent, Message
+from actum.messages import Action, Continuation, Intent, Message
 from actum.node import Node, Numbering, Tick, replay
+from continued import at_this_speed
 from recognisers import tiny_model
 from som_classifier.node import SomClassifier
 from wire import without_seq
@@ -67,9 +68,18 @@ def merged(streams: Iterable[list[Arrival]]) -> list[Arrival]:
 
 
 def answers(streams: dict[str, list[Arrival]], actions_late_ns: int = 0) -> list[Message]:
-    """Run the chain: every final action and every event, by segment; intents rest on what has arrived."""
+    """Run the chain: every final action and every event, by segment."""
     put = replayed(SomClassifier(tiny_model()), merged(streams.values()))
     finals = [(at_ns + actions_late_ns, m) for at_ns, m in put if isinstance(m, Action) and m.final]
     events = replayed(ActionFusion(Settings()), merged([*streams.values(), finals]))
     answered = [message for _, message in [*finals, *events] if not isinstance(message, Intent)]
     return sorted(answered, key=lambda message: (message.segment_id, message.SCHEMA, without_seq([message])))
+
+
+def foreseen(streams: dict[str, list[Arrival]], actions_late_ns: int = 0) -> list[Message]:
+    """Run the chain: every intent and every continuation, by stamp; for these no service waits."""
+    put = replayed(SomClassifier(at_this_speed()), merged(streams.values()))
+    actions = [(at_ns + actions_late_ns, m) for at_ns, m in put if isinstance(m, Action)]
+    from_fusion = replayed(ActionFusion(Settings()), merged([*streams.values(), actions]))
+    said = [m for _, m in [*put, *from_fusion] if isinstance(m, Continuation | Intent)]
+    return sorted(said, key=lambda message: (message.stamp_ns, message.agent, message.SCHEMA))

@@ -11,9 +11,13 @@ from actum.node import SECOND_NS
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.training import train, with_continuation
 from performers import TINY_PAPER
-from som_classifier.continuation import Continuation
+from recognisers import tiny_model
+from som_classifier.continuation import HORIZONS_S, Continuation
 from som_classifier.frames import Frame
+from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 from som_classifier.model import Model
+from som_classifier.pyramid_model import PyramidModel
+from som_classifier.regressed_continuation import ANSWERS, INPUTS, RegressedContinuation
 from unmarked import spotting_model, taught
 
 FROM_TORSO = replace(TINY_PAPER, posture=replace(TINY_PAPER.posture, origin="torso"))
@@ -33,6 +37,20 @@ def continued(kind: str) -> Model:
 def continuation_of(model: Model) -> Continuation:
     assert model.continuation is not None
     return model.continuation
+
+
+@cache
+def at_this_speed() -> PyramidModel:
+    """A tiny model after which every joint goes on from where it is measured, at the speed that it has."""
+    model = tiny_model()
+    assert isinstance(model, PyramidModel)
+    moves = INPUTS // 2
+    axes = np.zeros((INPUTS + model.first.units, moves), np.float32)
+    axes[moves:INPUTS] = np.eye(moves) / LAG_TIME_CONSTANT_S
+    directions = np.concatenate([ahead_s * np.eye(moves) for ahead_s in HORIZONS_S], axis=1).astype(np.float32)
+    none, shares = np.zeros(INPUTS, np.float32), np.ones((2, len(HORIZONS_S)), np.float32)
+    continuation = RegressedContinuation(none, axes, directions, np.zeros(ANSWERS, np.float32), shares)
+    return replace(model, continuation=continuation)
 
 
 def standing_stream(posture: Array, seconds: float = 10.0, person: str = "1") -> LabelledStream:

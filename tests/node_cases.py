@@ -14,6 +14,7 @@ from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings as FusionSettings
 from actum.messages import Action, Event, Image, Message, Posture, Segment
 from actum.node import SECOND_NS, Node
+from continued import at_this_speed
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings as TrackerSettings
 from people import FRAME_NS, reaches
@@ -198,5 +199,16 @@ FINDING = Case(
 )
 """A task without marks. Its segments' names tell when the stream began, so a disturbance before it changes them."""
 
+CONTINUING = Case(
+    "som_classifier that continues postures",
+    lambda: SomClassifier(at_this_speed()),
+    partial(_classified, slice(WARM_UP)),
+    partial(_classified, slice(WARM_UP, None)),
+    _any,
+    r"actum/kinect0/continuation/\d+",
+)
+"""A task whose answers rest on smoothed postures alone, so a disturbance before it changes them."""
+ALL_CASES = (*CASES, FINDING, CONTINUING)
+
 every_node = pytest.mark.parametrize("case", CASES, ids=repr)
-every_node_finding_too = pytest.mark.parametrize("case", [*CASES, FINDING], ids=repr)
+every_node_finding_too = pytest.mark.parametrize("case", ALL_CASES, ids=repr)

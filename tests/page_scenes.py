@@ -5,7 +5,17 @@ import time
 from collections.abc import Iterator
 from typing import Any
 
-from actum.messages import Action, Intended, Message, Objects, Status, TrackedObject
+from actum.messages import (
+    Action,
+    Continuation,
+    Intended,
+    Message,
+    Objects,
+    PostureAhead,
+    Skeleton,
+    Status,
+    TrackedObject,
+)
 from actum.node import SECOND_NS, Tick
 from dashboards import Served
 from empty_messages import contact, intent
@@ -26,6 +36,7 @@ class Scene:
         self.page = page
         self.still = False
         self.contact: Intended | None = None
+        self.rises_m: float | None = None
         self.stamp_ns = 1_700_000_000_000_000_000
         self._preprocessor = PosePreprocessor(PoseSettings.defaults())
         self._frames = reaches(60)
@@ -49,11 +60,13 @@ class Scene:
 
     def _instant(self, number: int) -> Iterator[Message]:
         pose = 0 if self.still else number % len(self._frames)
-        frame = self._frames[pose].model_copy(update={"stamp_ns": self.stamp_ns, "seq": number})
+        frame = self._frames[pose].model_copy(update={"stamp_ns": self.stamp_ns, "seq": number, "session_id": ""})
         yield frame
         yield from (output for output in self._preprocessor.handle(frame) if isinstance(output, Message))
         if (expected := self.contact) is not None:
             yield intent(self.stamp_ns, expected, segment_id="one")
+        if self.rises_m is not None:
+            yield risen(frame, self.rises_m)
         if number % 2 == 0:
             yield photograph(self.stamp_ns)
             yield objects(self.stamp_ns, 0.1 * pose / len(self._frames))
@@ -83,6 +96,10 @@ class Scene:
         self.page.give(status(node.name, self.stamp_ns).model_copy(update={"hops": node.counters.hops}))
         return {hop.effect for hop in node.counters.hops}
 
+    def rise(self, rises_m: float | None) -> None:
+        """From now on expect with each frame that all joints rise so far in half a second; None: expect nothing."""
+        self.rises_m = rises_m
+
     def answer(self, segment_id: str, sentence: str, confidence: float = 0.9) -> None:
         """Put an early answer, a final action and the event of one segment that ends now."""
         times = {"stamp_ns": self.stamp_ns, "start_ns": self.stamp_ns - SECOND_NS // 2, "end_ns": self.stamp_ns}
@@ -102,6 +119,15 @@ def action(segment_id: str, times: dict[str, Any], final: bool) -> Action:
     return Action(
         **times, sensor="kinect0", agent=1, segment_id=segment_id, final=final, action="push", confidence=0.7,
         activations=activations(), part="right_arm", frames=40, missed=0, familiarity=0.8 if final else None,
+    )  # fmt: skip
+
+
+def risen(frame: Skeleton, rises_m: float) -> Continuation:
+    """Expect the person of a frame so much higher half a second later."""
+    joints = [joint and [joint[0], joint[1] - rises_m, joint[2]] for joint in frame.agents[0].joints]
+    return Continuation(
+        stamp_ns=frame.stamp_ns, sensor=frame.sensor, agent=1, ahead=[PostureAhead(ahead_s=0.5, joints_m=joints)],
+        session_id=frame.session_id,
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from benchmarks.continuous.simulated import TAUGHT, TAUGHT_REPETITIONS, TESTED, 
 from benchmarks.originals import ImportedSets
 
 from actum import keys
+from actum.messages import Posture
 from actum.node import replay
 from actum.recording import Recording
 from actum_dataset_importer.importing import import_msr_action3d, import_msrc12_composed, import_utkinect
@@ -26,10 +27,12 @@ class Divided:
     Attributes:
         taught: what the training people's recordings hold.
         tested: each tested person's streams, as lists of valid frames.
+        recordings: those of the tested people.
     """
 
     taught: Samples
     tested: Mapping[str, Sequence[Sequence[Frame]]]
+    recordings: Sequence[Recording]
 
 
 class Sets:
@@ -77,7 +80,7 @@ def divided(taught: Sequence[Recording], tested: Sequence[Recording]) -> Divided
     by_person: dict[str, list[Sequence[Frame]]] = {}
     for recording in tested:
         by_person.setdefault(recording.person, []).extend(frames_of(recording))
-    return Divided(samples_from(taught), by_person)
+    return Divided(samples_from(taught), by_person, tested)
 
 
 def frames_of(recording: Recording) -> list[list[Frame]]:
@@ -89,3 +92,10 @@ def frames_of(recording: Recording) -> list[list[Frame]]:
             raise AssertionError("the collector puts nothing")
         found += list(collector.frames.values())
     return found
+
+
+def postures_of(recording: Recording) -> list[Posture]:
+    """Return the postures of everybody in a recording, as the classifier gets them."""
+    sensors = sorted(recording.sensors(keys.SKELETON))
+    messages = [message for sensor in sensors for _, message in classifier_input(recording, sensor)]
+    return [message for message in messages if isinstance(message, Posture)]

@@ -16,8 +16,9 @@ from som_classifier.continuation import HORIZONS_S
 from som_classifier.model import Model
 from som_classifier.presets import DEFAULT, PAPER, Preset
 
-from .data import Sets
+from .data import Sets, postures_of
 from .errors import BASELINES, KEPT, Predict, Truth, as_measured, as_smoothed, errors_of, predicting
+from .publishing import published_ms
 
 BETWEEN = "without map or regression"
 """The posture stays between smoothed and measured, or beyond: what the shares of a continuation do alone."""
@@ -112,15 +113,19 @@ def _rows(name: str, errors_m: Mapping[str, NDArray[np.float64]]) -> Iterator[li
 def cost(bench: Bench) -> Iterator[str]:
     """What a continuation costs."""
     yield f"""Models of {COSTLY}, one core that is shared with other work. A call takes as long as the fastest hundredth
-of {CALLS} calls."""
-    rows = []
+of {CALLS} calls. *Published*: how much longer the classifier takes for a posture while somebody subscribes to
+continuations, on average and in the slowest hundredth: call, message and bytes, in a recording of a tested person."""
+    postures, rows = postures_of(bench.sets.divided(COSTLY).recordings[0]), []
     for title, preset in PRESETS.items():
         trained = bench.trained(COSTLY, preset)
         took = f"{trained.training_s:.1f}", f"{trained.continuation_s:.1f}"
-        rows.append([title, f"{_call_ms(bench, trained.model):.3f}", *took, *_sizes_mb(trained.model)])
+        published = [f"{each:.2f}" for each in published_ms(trained.model, postures)]
+        rows.append([title, f"{_call_ms(bench, trained.model):.3f}", *published, *took, *_sizes_mb(trained.model)])
     header = (
         "continuation",
         "a call, ms",
+        "published, ms",
+        "slowest hundredth, ms",
         "training without it, s",
         "its training, s",
         "file without it, MB",

@@ -15,6 +15,7 @@ from actum.codec import schema_name
 from actum.messages import (
     Action,
     Agent,
+    Continuation,
     Event,
     HeldBack,
     Image,
@@ -126,6 +127,8 @@ def _content(message: Message) -> str:
             text = f"[dim]not told: {escape(message.sentence)}[/dim]"
         case Intent():
             text = _intent(message)
+        case Continuation():
+            text = _continuation(message)
         case Truth():
             done = f'{message.action} {message.object_id} "{message.object_name}"'
             text = f"{message.kind} {escape(message.segment_id)}: {escape(done)}"
@@ -142,6 +145,16 @@ def _intent(message: Intent) -> str:
     reach = f"reaches for {escape(likeliest.object_name)} ({likeliest.object_id}) with the {likeliest.hand} hand"
     when = f"contact in {likeliest.contact_s:.2f} s ± {likeliest.contact_std_s:.2f}"
     return f"{likeliest.probability:.2f}  {reach}, {when}"
+
+
+def _continuation(message: Continuation) -> str:
+    """Describe where the hands are expected, in the camera frame."""
+    left, right = (INDEX[name] for name in ("left_hand", "right_hand"))
+    hands = [
+        f"in {each.ahead_s:g} s left hand {_point(each.joints_m[left])}, right hand {_point(each.joints_m[right])}"
+        for each in message.ahead
+    ]
+    return f"agent {message.agent}: {'; '.join(hands)}"
 
 
 def _posture(message: Posture) -> str:

@@ -79,7 +79,7 @@ CLASSIFIER = Role(
     "the classifier, which also publishes the segments that it finds",
     services=("som_classifier",),
     serves_several=True,
-    puts=(keys.SEGMENT, keys.ACTION, keys.HELD_BACK),
+    puts=(keys.SEGMENT, keys.ACTION, keys.HELD_BACK, keys.CONTINUATION),
     reads=(keys.POSTURE, keys.SEGMENT, keys.ACTION),
 )
 TRACKER = Role(

@@ -26,7 +26,7 @@ from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.sample_reading import select
 from actum_model_trainer.sampling import sampled_from
-from actum_model_trainer.training import TrainingError, train_to_spot, update
+from actum_model_trainer.training import TrainingError, train_to_spot, update, with_continuation
 from model_trainer.set_evaluation import evaluate_set
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, kept_in, load_model
@@ -48,6 +48,7 @@ class Arguments(BaseModel):
     takes: Path = Path()
     preset: str = ""
     seed: int = 0
+    continued: bool = False
     model: Path | None = None
     video: Path = Path()
     label: str = ""
@@ -88,6 +89,8 @@ def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
         preset = PRESETS.get(before.metadata.preset, PRESETS[arguments.preset])
         assert arguments.model is not None
         model = update(before, *learnt, preset, arguments.seed, progress, kept_in(arguments.model))
+    if arguments.continued:
+        model = with_continuation(model, samples.streams, arguments.seed, progress)
     model.save(arguments.folder / MODEL)
     answers = model.metadata.held_out_answers
     right = sum(done == answered for done, answered in answers)

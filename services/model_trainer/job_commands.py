@@ -112,7 +112,7 @@ class JobCommands:
         """Train a model on a set; 'activate' puts it into use."""
         if request.preset not in PRESETS:
             raise Refusal(f"there is no preset {request.preset!r}: use one of {', '.join(PRESETS)}")
-        fields: dict[str, Any] = {"preset": request.preset, "seed": request.seed}
+        fields: dict[str, Any] = request.model_dump(include={"preset", "seed", "continued"})
         if request.update is not None:
             fields["model"] = str(self._models.get(request.update).path)
         return self._start("train", request.set, fields)

@@ -146,6 +146,8 @@ class Train(OfSet):
     other actions than the model: everything is trained anew."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """The same seed and examples make the same model."""
+    continued: bool = False
+    """Whether to train how a person's posture goes on in the next second, too."""
 
 
 class OfJob(Request):

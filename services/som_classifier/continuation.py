@@ -15,6 +15,8 @@ STEPS = (1, 2, 4)
 """After how many steps the posture is predicted: after 0.25, 0.5 and 1 s."""
 STEP_NS = SECOND_NS // 4
 """One step (ns): long enough for a moving hand to leave the units of the map that were active."""
+LOOKED_BACK_NS = 2 * STEP_NS
+"""How far back (ns) frames are needed: one step, and the frame before that, also where some are lost."""
 HORIZONS_S = tuple(steps * STEP_NS / SECOND_NS for steps in STEPS)
 """How far ahead the posture is predicted (s)."""
 PREFIX = "continuation_"
@@ -36,7 +38,7 @@ class Continuation(ABC):
 
         Args:
             frames: the newest valid frames of one person in order, at least one, each with the activity that the
-                model's encoder gave. Frames that are older than `STEP_NS` before the newest one are not needed.
+                model's encoder gave. Frames that are older than `LOOKED_BACK_NS` before the newest one are not needed.
         """
         newest = frames[-1]
         assert newest.kinematics is not None and newest.upright is not None

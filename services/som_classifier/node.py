@@ -5,15 +5,17 @@ from typing import Any, Literal, Protocol
 
 from actum import keys
 from actum.commands import Command, NoFields, Refusal
-from actum.messages import AUTO, Action, Message, Posture, Segment, WhyHeldBack
+from actum.messages import AUTO, Action, Continuation, Message, Posture, Segment, WhyHeldBack
 from actum.node import Counters, Tick
 from actum.parameters import LiveParameters
 from actum.states import State
 from som_classifier.answers import final_action, held_back, ongoing_action, own_mark, partial_action, tensor
+from som_classifier.continuation import LOOKED_BACK_NS
 from som_classifier.frames import Frame
 from som_classifier.model import Model, Recognition
 from som_classifier.model_loading import WatchedModel
 from som_classifier.model_maps import MapDescription, NoMapsError, map_description
+from som_classifier.placed_continuation import continuation_of, moves
 from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.segmenter import Segmenter
 from som_classifier.segments import ClosedSegment, OpenSegment
@@ -26,7 +28,6 @@ Fate = WhyHeldBack | Literal["told", "marked"]
 """What becomes of a segment that was found: published, answered by its mark, or held back."""
 POLL_TICKS = 5
 """Ticks between two checks of the model file, half a second: a new model seems to be used at once."""
-
 
 MARKS_OFF = "marks are not used: the classifier's setting segments is auto"
 """Why marks are rejected where only found segments are wanted."""
@@ -48,12 +49,14 @@ class ModelSource(Protocol):
 class SomClassifier:
     """Estimates the action while a segment is open, and answers it once when it closes.
 
-    It answers the segments that are marked, and marks and answers those that it finds by itself.
+    It answers the segments that are marked, and marks and answers those that it finds by itself. With a model that has
+    a continuation, it also puts how the posture of a person who moves goes on.
     """
 
     name = "som_classifier"
     inputs = (keys.POSTURE, keys.SEGMENT)
     answers = keys.ACTION
+    on_demand = keys.CONTINUATION
 
     def __init__(
         self,
@@ -70,6 +73,7 @@ class SomClassifier:
             self._use(model)
         self._source = source
         self._publish_maps = publish_maps
+        self.is_demanded = True
         self._parameters: tuple[Command[Any, Any], ...] = ()
         self._ticks = 0
         self._sensor = "unknown"
@@ -164,6 +168,20 @@ class SomClassifier:
                 yield from self._found(found, stream, posture.agent)
             if spotted.ongoing is not None:
                 yield from self._ongoing(spotted.ongoing, stream, posture)
+            yield from self._continued(stream, frame, posture)
+
+    def _continued(self, stream: Stream, newest: Frame, posture: Posture) -> Iterator[Continuation]:
+        """Say how the posture goes on, if somebody wants to know: that depends on postures alone, not on marks."""
+        going_on = None if self._model is None else self._model.continuation
+        if not self.is_demanded or not posture.agent or not newest.valid or going_on is None:
+            return
+        frames = [frame for frame in stream.between(newest.stamp_ns - LOOKED_BACK_NS, newest.stamp_ns) if frame.valid]
+        if not moves(frames):
+            return
+        if (continued := continuation_of(going_on.ahead(frames), newest, posture)) is not None:
+            yield continued
+        else:
+            self.counters.reject("bad_posture", f"no usable place of agent {posture.agent} at {posture.stamp_ns}")
 
     def _partial(self, segment: OpenSegment, stream: Stream, posture: Posture) -> Iterator[Action]:
         seen = stream.stretch(segment.start_ns or 0, posture.stamp_ns)

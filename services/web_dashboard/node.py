@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager
 
 from actum import keys
 from actum.hops import Hops
-from actum.messages import Image, Message
+from actum.messages import Continuation, Image, Message
 from actum.node import SECOND_NS, Counters, Tick
 from actum.runtime import Client
 from web_dashboard.application import application
@@ -38,6 +38,7 @@ class WebDashboard:
         keys.HELD_BACK,
         keys.EVENT,
         keys.INTENT,
+        keys.CONTINUATION,
         keys.STATUS,
         keys.TRAINING,
     )
@@ -68,7 +69,7 @@ class WebDashboard:
             self._report(message)
             return ()
         self._hops.receive(message)
-        if self._hub.watched or not isinstance(message, Image):
+        if self._hub.watched or not isinstance(message, Image | Continuation):
             self._hub.publish(envelope_of(message))
         return ()
 

@@ -67,6 +67,8 @@ EVENT = Topic("event/{}", m.Event, cache=64)
 """Events, one for each segment: verb, object and result."""
 INTENT = Topic("intent/{}", m.Intent)
 """What people are about to touch. None is kept: an older one is outdated."""
+CONTINUATION = Topic("continuation/{}", m.Continuation)
+"""How postures go on. None is kept, and none is put while nobody listens: an older one is outdated."""
 STATUS = Topic("status/{}", m.Status, priority="background")
 """A service's health, once a second."""
 INFO = Topic("info/{}", m.Info)
@@ -87,6 +89,7 @@ TOPICS: tuple[Topic, ...] = (
     HELD_BACK,
     EVENT,
     INTENT,
+    CONTINUATION,
     STATUS,
     INFO,
     TRUTH,
@@ -94,7 +97,7 @@ TOPICS: tuple[Topic, ...] = (
 )
 _BY_PREFIX = {topic.leaf.removesuffix("/{}"): topic for topic in TOPICS}
 """Topics by their leaf without `/{}`, such as `posture`."""
-_BY_AGENT, _BY_SERVICE = (POSTURE, ACTION, HELD_BACK, EVENT, INTENT), (STATUS, INFO)
+_BY_AGENT, _BY_SERVICE = (POSTURE, ACTION, HELD_BACK, EVENT, INTENT, CONTINUATION), (STATUS, INFO)
 _NAMED_BY = {**dict.fromkeys(_BY_AGENT, "agent"), **dict.fromkeys(_BY_SERVICE, "service")}
 """The field that gives the last chunk of the key, for the topics whose keys have one."""
 _PLACES = {topic.message.SCHEMA: (topic, _NAMED_BY.get(topic)) for topic in TOPICS if topic is not DEPTH}

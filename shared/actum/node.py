@@ -104,6 +104,20 @@ class Remembering(Protocol):
         ...
 
 
+@runtime_checkable
+class OnDemand(Protocol):
+    """A node that puts one of its topics only while somebody listens: few do, and it is put with every posture.
+
+    Attributes:
+        on_demand: the topic.
+        is_demanded: whether somebody listens. True at first, so that a replay yields everything; the runtime changes it
+            before each tick. Nothing that the node puts on other topics depends on it.
+    """
+
+    on_demand: keys.Topic
+    is_demanded: bool
+
+
 class Source(Servable, Protocol):
     """A sensor that yields frames in the order of their stamps. The runtime decides when to put each."""
 

@@ -77,9 +77,22 @@ def scaled(joints: Array) -> Array:
     return result
 
 
+def in_own_size(standard: Array, metric: Array) -> Array:
+    """Return postures of a standard body with the bones of a person's own lengths, (…, 15, 3), the torso at 0.
+
+    A bone that is shorter or longer than its standard length, as in a mean of postures, stays so in proportion.
+
+    Args:
+        standard: (…, 15, 3), in any frame, NaN where unknown.
+        metric: (15, 3), the person's joints in metres, in any frame, NaN where unknown.
+    """
+    ratios = np.sqrt(bones_of(metric)[1]) / _LENGTHS_M
+    return _positions_where_known((standard[..., _CHILDREN, :] - standard[..., _PARENTS, :]) * ratios[:, None])
+
+
 def _positions_where_known(bones: Array) -> Array:
-    """Return the joints relative to the torso, (15, 3), NaN where a bone (14, 3) on the path to them is unknown."""
-    unknown = np.isnan(bones[:, 0])
-    positions: Array = _PATHS @ np.where(unknown[:, None], 0.0, bones)
-    positions[_PATHS @ unknown > 0] = np.nan
+    """Return joints relative to the torso, (…, 15, 3), NaN where a bone (…, 14, 3) on the path to them is unknown."""
+    unknown = np.isnan(bones[..., 0])
+    positions: Array = _PATHS @ np.where(unknown[..., None], 0.0, bones)
+    positions[unknown @ _PATHS.T > 0] = np.nan
     return positions

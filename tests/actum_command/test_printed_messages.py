@@ -18,7 +18,7 @@ from rich.panel import Panel
 import events
 from actum import keys
 from actum.codec import DecodeError
-from actum.messages import Action, Event, Message, Objects, Segment, TrackedObject
+from actum.messages import Action, Continuation, Event, Message, Objects, PostureAhead, Segment, TrackedObject
 from actum.runtime import Received
 from actum.skeletons import INDEX
 from actum_command.commands import terminal
@@ -162,6 +162,13 @@ def test_a_posture_is_shown_with_where_hips_and_hands_are() -> None:
         assert np.linalg.norm(hand_m) == pytest.approx(np.linalg.norm(joints[INDEX[name]] - hips_m), abs=0.03)
     lost = posture.model_copy(update={"joints_m": None})
     assert describe(lost) == "agent 1: no joints"
+
+
+def test_a_continuation_is_described_by_the_hands() -> None:
+    joints = [[0.0, 0.0, float(number)] for number in range(14)]
+    ahead = [PostureAhead(ahead_s=0.5, joints_m=[*joints, None])]
+    hands = "in 0.5 s left hand (0.00, 0.00, 5.00) m, right hand (0.00, 0.00, 8.00) m"
+    assert describe(Continuation(stamp_ns=1, sensor="kinect0", agent=1, ahead=ahead)) == f"agent 1: {hands}"
 
 
 def test_json_has_every_field_on_one_line() -> None:

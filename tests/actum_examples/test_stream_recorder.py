@@ -7,7 +7,19 @@ from mcap.reader import make_reader
 
 from actum import keys
 from actum.limits import MAX_SKEW_NS
-from actum.messages import AUTO, MANUAL, REPLAY, SIMULATOR, Image, Intent, Message, Segment, Skeleton, Truth
+from actum.messages import (
+    AUTO,
+    MANUAL,
+    REPLAY,
+    SIMULATOR,
+    Continuation,
+    Image,
+    Intent,
+    Message,
+    Segment,
+    Skeleton,
+    Truth,
+)
 from actum.node import SECOND_NS, SETTLE_NS, Counters
 from actum.recorder import Recorder
 from actum.recording import Recording
@@ -133,6 +145,11 @@ def test_images_are_stored_only_if_asked_for(take: Take) -> None:
 
 def test_what_people_are_about_to_touch_is_stored(take: Take) -> None:
     assert [type(m) for m in take.record(skeleton(1), intent(1, contact(0.9)), intent(2))] == [Skeleton, Intent, Intent]
+
+
+def test_how_postures_go_on_is_not_stored_since_it_follows_from_the_postures(take: Take) -> None:
+    ahead = Continuation(stamp_ns=1, sensor="kinect0", agent=1, ahead=[])
+    assert [type(m) for m in take.record(skeleton(1), ahead)] == [Skeleton]
 
 
 def test_marks_are_resolved_by_streams_that_are_not_stored(take: Take) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from io import BytesIO
 from typing import Any
 
+import numpy as np
 import pytest
 from PIL import Image as Picture
 
@@ -16,6 +17,8 @@ from page_scenes import Scene, action
 
 pytestmark = pytest.mark.browser
 Open = Callable[..., Any]
+FAINT, EDGES = 15, 0.005
+"""Difference of brightness that is no noise, and share of pixels that differ where a body moves by a pixel."""
 COLOURS = 100
 """An empty canvas has a few dozen: a gradient."""
 HELD_MS = 500
@@ -37,6 +40,12 @@ def at_rest(view: Any) -> bytes:
 
     wait_until(rests, "the view is at rest")
     return seen[-1]
+
+
+def is_other(view: Any, before: bytes) -> bool:
+    """Tell whether more is drawn elsewhere than the edges of what moves by a pixel."""
+    then, now = (np.asarray(Picture.open(BytesIO(each)).convert("RGB"), float) for each in (before, view.screenshot()))
+    return bool((np.abs(now - then).max(axis=2) > FAINT).mean() > EDGES)
 
 
 def wait_for_state(page: Any, text: str) -> None:
@@ -71,6 +80,25 @@ def test_the_view_turns_zooms_and_changes_its_frame_by_keys(scene: Scene, open_i
         before = after
     page.get_by_label("Frame of the 3-D view").select_option("person")
     assert at_rest(view) != before
+
+
+def test_who_moves_is_also_drawn_as_expected_in_half_a_second_unless_that_is_switched_off(
+    scene: Scene, open_in_3d: Open
+) -> None:
+    page = open_in_3d(scene.page.address)
+    wait_for_state(page, "live")
+    scene.still = True
+    scene.go_on(2.0)  # until the trails of the hands end
+    view, ahead = page.get_by_role("group", name="3-D view"), page.get_by_label("Half a second ahead")
+    alone = at_rest(view)
+    scene.rise(0.4)
+    wait_until(lambda: is_other(view, alone), "the ghost is drawn")
+    ahead.uncheck()
+    wait_until(lambda: not is_other(view, alone), "the ghost is switched off")
+    ahead.check()
+    wait_until(lambda: is_other(view, alone), "the ghost is switched on")
+    scene.rise(None)
+    wait_until(lambda: not is_other(view, alone), "the ghost goes where nothing is expected any more")
 
 
 def test_an_event_appears_large_in_the_timeline_and_with_what_spoke_for_it(scene: Scene, open_page: Open) -> None:

@@ -309,8 +309,10 @@ def trained(held_out: float = 0.9) -> dict[str, Any]:
 
 
 def test_a_model_is_trained_put_into_use_compared_undone_and_deleted(room: Lesson, models: Any) -> None:
+    models.get_by_label("Also learn how postures go on").check()
     press(models, "Train")
     wait_until(lambda: bool(room.teacher.jobs), "it is trained")
+    assert room.teacher.jobs[0].request.fields["continued"]
     room.teacher.jobs[0].news = Progressing("training the maps", 0.25)
     says(models, "training", "Training: training the maps, 25 %")
     room.end_job(trained())

@@ -7,7 +7,7 @@ import pytest
 
 from actum.messages import Action, Agent, Message, Posture, Segment, Skeleton
 from actum.node import SECOND_NS, TICK_NS, Node, Tick
-from node_cases import CASES, CLASSIFIER, FINDING, NOON_NS, Case
+from node_cases import ALL_CASES, CLASSIFIER, NOON_NS, Case
 
 MINUTE_S = 60
 FILLED_S = 70
@@ -53,8 +53,8 @@ def traced() -> Iterator[None]:
 
 @pytest.mark.parametrize(
     ("case", "renumbered"),
-    [pytest.param(case, False, marks=pytest.mark.thorough) for case in [*CASES, FINDING]]
-    + [(case, True) for case in [*CASES, FINDING] if case.name != "marker_tracker"],
+    [pytest.param(case, False, marks=pytest.mark.thorough) for case in ALL_CASES]
+    + [(case, True) for case in ALL_CASES if case.name != "marker_tracker"],
     ids=lambda value: {False: "one person", True: "renumbered every second"}.get(value) or repr(value),
 )
 @pytest.mark.usefixtures("traced")

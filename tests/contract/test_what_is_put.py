@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from actum import codec, keys, messages
-from actum.messages import HeldBack, Info, Intent, Message, Status, Training, Truth
+from actum.messages import Continuation, HeldBack, Info, Intent, Message, Status, Training, Truth
 from actum.node import SECOND_NS, TICK_NS, Tick
 from node_cases import CASES, Case, every_node_finding_too
 from wire import Wire, packed
@@ -23,6 +23,7 @@ STRANGERS: tuple[Message, ...] = (
         why="unknown", sentence="like lift, but not like enough: 0.10",
     ),
     Intent(stamp_ns=1, sensor="kinect0", agent=1, intended=[]),
+    Continuation(stamp_ns=1, sensor="kinect0", agent=1, ahead=[]),
     Info.model_validate(HEALTH | {"version": "1", "schemas": [], "joint_names": []}),
     Status.model_validate(
         HEALTH

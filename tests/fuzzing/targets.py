@@ -17,7 +17,7 @@ from actum.node import Counters, Numbering, Tick
 from dashboards import Colleague
 from fuzzing.mutations import of_bytes, request
 from model_trainer.trainer import ModelTrainer
-from node_cases import CASES, FINDING, FUSION, NOON_NS, Case
+from node_cases import CASES, CONTINUING, FINDING, FUSION, NOON_NS, Case
 from people import reaches
 from ros2_bridge.bridge import Ros2Bridge
 from ros2_bridge.settings import Settings as BridgeSettings
@@ -178,13 +178,10 @@ def _trainer(folder: Path) -> Target:
     return Target(node.name, seen, node.handle, node.counters, commands)
 
 
-def _finding(_: Path) -> Target:
-    return _of_case(FINDING)
-
-
 TARGETS: Mapping[str, Callable[[Path], Target]] = {
     **{case.name: lambda _, case=case: _of_case(case) for case in CASES},  # type: ignore[misc]
-    "som_classifier, finding": _finding,
+    "som_classifier, finding": lambda _: _of_case(FINDING),
+    "som_classifier, continuing": lambda _: _of_case(CONTINUING),
     "web_dashboard": _dashboard,
     "model_trainer": _trainer,
     "ros2_bridge": _bridge,

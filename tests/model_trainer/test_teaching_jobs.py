@@ -94,6 +94,13 @@ def test_a_set_is_trained_put_into_use_and_undone(teacher: Teacher, finish: Fini
         teacher.ask("undo")
 
 
+def test_how_postures_go_on_is_learnt_on_request(teacher: Teacher, finish: Finish) -> None:
+    for continued in (False, True):
+        teacher.ask("train", set="kitchen", continued=continued)
+        teacher.ask("activate", model=finish()["result"]["model"])
+        assert (load_model(teacher.model).continuation is not None) == continued
+
+
 def test_a_job_says_how_much_is_used_where_not_all_fits(
     teacher: Teacher, finish: Finish, monkeypatch: pytest.MonkeyPatch
 ) -> None:

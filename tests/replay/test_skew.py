@@ -7,9 +7,9 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from actum.messages import Action, Agent, Event, Image, Message, Segment, Skeleton, Truth
+from actum.messages import Action, Agent, Continuation, Event, Image, Intent, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS
-from chain import answers, by_key, delayed
+from chain import answers, by_key, delayed, foreseen
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 from pose_preprocessor.node import PosePreprocessor
@@ -19,6 +19,8 @@ from scene_simulator.simulator import Simulator
 from wire import without_seq
 
 SKEW_NS = 2 * SECOND_NS
+USUAL_NS = SECOND_NS // 10
+"""How late objects and partial actions are at the most where everything keeps up, behind the postures (ns)."""
 FRAME_NS = SECOND_NS // 30
 SAMPLES = 3
 BESIDE_M = np.array([0.9, 0.0, 0.6])
@@ -148,3 +150,39 @@ def test_a_delay_of_each_message_changes_nothing(streams, on_time, jitter_ns, ac
     """Order is kept within a key."""
     late = {key: delayed(streams[key], delays_ns) for key, delays_ns in zip(streams, jitter_ns, strict=True)}
     assert without_seq(answers(late, actions_ns)) == without_seq(on_time)
+
+
+@pytest.fixture(scope="module")
+def foreseen_on_time(streams: dict[str, list[Message]]) -> list[Message]:
+    return foreseen({key: delayed(messages, [0]) for key, messages in streams.items()})
+
+
+def jittered(of_key: st.SearchStrategy[int]) -> st.SearchStrategy[list[int]]:
+    return st.lists(of_key, min_size=1, max_size=40)
+
+
+@patient
+@given(
+    postures_ns=jittered(st.integers(0, USUAL_NS // 2 - 1)),
+    objects_ns=jittered(st.integers(0, USUAL_NS - 1)),
+    actions_ns=st.integers(0, USUAL_NS // 2),
+)
+def test_the_usual_delays_change_nothing_that_is_foreseen(
+    streams, foreseen_on_time, postures_ns, objects_ns, actions_ns
+) -> None:
+    """Marks are on time: an intent names the action that is known to go on."""
+    late = {
+        key: delayed(messages, postures_ns if "/posture/" in key else objects_ns if "/objects" in key else [0])
+        for key, messages in streams.items()
+    }
+    assert without_seq(foreseen(late, actions_ns)) == without_seq(foreseen_on_time)
+    assert {type(message) for message in foreseen_on_time} == {Continuation, Intent}
+    assert any(contact.action for m in foreseen_on_time if isinstance(m, Intent) for contact in m.intended)
+
+
+@patient
+@given(delays_ns=st.lists(late, min_size=KEYS, max_size=KEYS))
+def test_no_delay_changes_a_continuation(streams, foreseen_on_time, delays_ns) -> None:
+    late = {key: delayed(streams[key], [delay_ns]) for key, delay_ns in zip(streams, delays_ns, strict=True)}
+    said, on_time = ([m for m in each if isinstance(m, Continuation)] for each in (foreseen(late), foreseen_on_time))
+    assert without_seq(said) == without_seq(on_time)

@@ -1,4 +1,7 @@
-"""Real Kinect recordings through live processes give the very labels of the offline evaluation."""
+"""Real Kinect recordings through live processes give the very labels of the offline evaluation, and continuations.
+
+They hold no objects, so nothing is said of what people are about to touch: `test_live_intents` compares that.
+"""
 
 import json
 import shutil
@@ -9,17 +12,20 @@ from pathlib import Path
 import pytest
 
 from actum import keys
-from actum.messages import Event
+from actum.messages import Continuation, Event, PostureAhead
 from actum.recording import Recording
 from actum_dataset_importer.importing import import_msr_action3d, import_utkinect
 from actum_dataset_importer.msr_action3d import EXCLUDED, NAME, sequence_files
 from actum_dataset_importer.utkinect import LABELS
 from actum_model_trainer.evaluation import Evaluation, evaluate
 from actum_model_trainer.sample_reading import samples_from, select
-from actum_model_trainer.training import train
+from actum_model_trainer.training import train, with_continuation
 from live import System, collect
 from models import QUICK, QUICK_PAPER
+from pose_preprocessor.node import PosePreprocessor
+from pose_preprocessor.settings import Settings as PoseSettings
 from som_classifier.model_loading import load_model
+from som_classifier.node import SomClassifier
 from som_classifier.presets import PRESETS
 
 pytestmark = [pytest.mark.system, pytest.mark.data]
@@ -102,6 +108,38 @@ def test_a_continuous_utkinect_recording(running: System, data: Path, quick_mode
     events = play_live(running, quick_model, [recording.path], SPEED, expected=10)
     assert [event.missed for event in events] == [0] * 10
     assert_agree(events, offline)
+
+
+def continued_offline(model: Path, recording: Recording) -> list[Continuation]:
+    preprocessor, classifier = PosePreprocessor(PoseSettings.defaults()), SomClassifier(load_model(model))
+    postures = [p for frame in recording.messages((keys.SKELETON,)) for p in preprocessor.handle(frame)]
+    return [put for posture in postures for put in classifier.handle(posture) if isinstance(put, Continuation)]
+
+
+def by_time(continuations: Sequence[Continuation]) -> list[tuple[int, list[PostureAhead]]]:
+    """What is expected, by the time since the first: a recording that is played gets other stamps."""
+    return [(each.stamp_ns - continuations[0].stamp_ns, each.ahead) for each in continuations]
+
+
+def test_continuations_of_a_continuous_utkinect_recording(
+    running: System, data: Path, few_of_msr: Path, quick_model: Path, tmp_path: Path
+) -> None:
+    for name in ("joints_s01_e01.txt", LABELS):
+        shutil.copy(data / "utkinect" / name, tmp_path)
+    import_utkinect(tmp_path, tmp_path / "utkinect", lambda _done, _total: None)
+    recording, model = Recording(tmp_path / "utkinect" / "s01_e01.mcap"), tmp_path / "continued.npz"
+    with_continuation(load_model(quick_model), samples_from(select([few_of_msr], TRAINING_PEOPLE)).streams).save(model)
+    offline = continued_offline(model, recording)
+    assert len(offline) > 100
+    running.start_router()
+    running.start("pose_preprocessor")
+    running.start("som_classifier", "--model", str(model))
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor", "som_classifier")
+        continuations = client.listen(keys.pattern(keys.CONTINUATION, client.sensor))
+        running.start("actum_command", "play", str(recording.path), "--speed", str(SPEED))
+        put = collect(continuations, Continuation, lambda found: len(found) >= len(offline))
+    assert by_time(put) == by_time(offline)
 
 
 @pytest.mark.live

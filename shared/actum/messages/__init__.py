@@ -4,7 +4,7 @@ Units are SI and named in the field where not obvious. Positions are in the sens
 x right, y down, z forward) unless the field says otherwise. Transforms are 4x4, row-major, 16 numbers.
 """
 
-from actum.messages.anticipated import Intended, Intent
+from actum.messages.anticipated import Continuation, Intended, Intent, PostureAhead
 from actum.messages.base import (
     LARGEST_SIDE_PX,
     MOST_ACTIONS,
@@ -56,6 +56,7 @@ MESSAGES: tuple[type[Message], ...] = (
     HeldBack,
     Event,
     Intent,
+    Continuation,
     Status,
     Info,
     Truth,
@@ -77,6 +78,7 @@ __all__ = [
     "ActedObject",
     "Action",
     "Agent",
+    "Continuation",
     "Direction",
     "Event",
     "Hand",
@@ -98,6 +100,7 @@ __all__ = [
     "Point",
     "Pointing",
     "Posture",
+    "PostureAhead",
     "Segment",
     "Skeleton",
     "Status",

@@ -1,4 +1,4 @@
-"""The message about what is about to happen: which object a hand is on its way to, before the hand arrives."""
+"""The messages about what is about to happen: which object a hand will touch, and how a posture goes on."""
 
 from typing import Annotated
 
@@ -10,11 +10,15 @@ from actum.messages.base import (
     Deviation,
     FinitePoint,
     Hand,
+    Joints,
     Message,
     Model,
     Name,
     SegmentId,
 )
+
+MOST_HORIZONS = 8
+"""Most postures in one continuation: a classifier puts three."""
 
 
 class Intended(Model):
@@ -55,5 +59,31 @@ class Intent(Message):
     """The fraction of the ongoing action that has been done, 0 to 1; null if no ongoing action is known."""
     segment_id: SegmentId | None = None
     """The name of the ongoing segment, marked or found; null if there is none."""
+    session_id: Name = ""
+    """The run of the source, as in the posture."""
+
+
+class PostureAhead(Model):
+    """A posture that a person is expected to have."""
+
+    ahead_s: FiniteFloat
+    """How long after `stamp_ns` (s)."""
+    joints_m: Joints
+    """The fifteen joints in the order of `info.joint_names` (m), in the camera frame of the skeletons; null if the
+    posture lacks one. The bones are about as long as the person's; the torso stays where it is at `stamp_ns`."""
+
+
+class Continuation(Message):
+    """How a person's posture goes on: one for each posture of a person who moves or has moved in the last half second.
+
+    Put only while somebody listens, and only by a classifier whose model was trained with `--continue`.
+    """
+
+    SCHEMA = "actum.continuation"
+    agent: AgentId
+    """The number of the person whose posture it is."""
+    ahead: Annotated[list[PostureAhead], Field(max_length=MOST_HORIZONS)]
+    """The expected postures, the soonest first: after 0.25, 0.5 and 1 s. Each is the mean of what may follow, so that
+    far movements look smaller than they will be."""
     session_id: Name = ""
     """The run of the source, as in the posture."""

@@ -50,6 +50,7 @@ class Outbox:
         self._keep: Callable[[Frame], None] | None = None
         self._numbering = Numbering()
         self._publishers: OrderedDict[tuple[str, Manner], Publisher] = OrderedDict()
+        self._watched: dict[str, zenoh.Publisher] = {}
         self._lock = threading.Lock()
 
     def put(self, message: Message) -> None:
@@ -86,6 +87,15 @@ class Outbox:
         """Declare a key's publisher ahead of the first put."""
         with self._lock:
             self._publisher(key, "cached" if keys.parse(key).topic.cache else "plain")
+
+    def is_demanded(self, pattern: str) -> bool:
+        """Tell whether anybody listens to some key of a pattern, such as `actum/kinect0/continuation/*`.
+
+        That is known from the second call on: the first one asks the router.
+        """
+        if pattern not in self._watched:
+            self._watched[pattern] = self._session.declare_publisher(pattern)
+        return bool(self._watched[pattern].matching_status.matching)  # type: ignore[attr-defined]
 
     def _publisher(self, key: str, manner: Manner) -> Publisher:
         if (key, manner) not in self._publishers:

@@ -11,7 +11,7 @@ from actum import keys
 from actum.bridge import Bridge
 from actum.codec import DecodeError, decode, origin_of
 from actum.messages import Action, Event, Message
-from actum.node import TICK_NS, Node, Remembering, Tick
+from actum.node import TICK_NS, Node, OnDemand, Remembering, Tick
 from actum.runtime.inbox import Inbox, Reach
 from actum.runtime.outbox import Outbox
 from actum.runtime.resuming import Resumption
@@ -97,6 +97,8 @@ class NodeService(StepService):
         super().__init__(node, settings)
         self._node = node
         self._resumption = resumption
+        if isinstance(node, OnDemand):
+            node.is_demanded = False
 
     @property
     def is_busy(self) -> bool:
@@ -125,6 +127,9 @@ class NodeService(StepService):
                 self._resumption.report(error)
 
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
+        if isinstance(message, Tick) and isinstance(self._node, OnDemand):
+            pattern = keys.pattern(self._node.on_demand, self._settings.sensor)
+            self._node.is_demanded = outbox.is_demanded(pattern)
         for output in self._node.handle(message):
             if self._resumption is None or self._resumption.admits(output):
                 outbox.put(output)

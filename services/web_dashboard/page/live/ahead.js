@@ -4,7 +4,7 @@ import { element } from "../elements.js";
 import { link } from "../link.js";
 import { isShown } from "./people.js";
 
-const LEAST = 0.3;   // hands always move a little towards something
+export const LEAST = 0.3;   // hands always move a little towards something
 const CERTAIN = 0.9;
 const MOST_PEOPLE = 64;   // people come with ever new numbers
 const SILENT_MS = 500;   // intents come with each posture: the person was lost from view, and no empty one comes

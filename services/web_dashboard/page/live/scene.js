@@ -9,9 +9,12 @@ import { guarded } from "../guarded.js";
 import { link } from "../link.js";
 import { isSensorStill } from "../waiting.js";
 import { Bodies } from "./bodies3d.js";
+import { expected, NOTHING } from "./expected.js";
+import { Ghosts } from "./ghosts3d.js";
 import { Labels } from "./labels.js";
 import { Things } from "./things3d.js";
-import { newestPosture, newestSkeleton, people, shownAgent } from "./people.js";
+import { newestPosture, newestSkeleton, shownAgent } from "./people.js";
+import { personChoice } from "./personchoice.js";
 
 const FRAMES = { camera: "Camera", person: "Person" };
 const TURN = Math.PI / 16;    // of one key press
@@ -33,34 +36,20 @@ export function scene() {
   });
   const frames = element("select", { "aria-label": "Frame of the 3-D view" },
     ...Object.entries(FRAMES).map(([value, name]) => element("option", { value }, `${name} frame`)));
-  const who = element("select", { "aria-label": "Person to show" });
-  const view = card("scene", "In 3-D", { controls: [who, frames] }, box, counts);
+  const ahead = element("input", { type: "checkbox", checked: true });
+  const controls = [element("label", { class: "check" }, ahead, "Half a second ahead"), personChoice(), frames];
+  const view = card("scene", "In 3-D", { controls }, box, counts);
   try {
-    new Stage(box, frames, counts);
+    new Stage(box, frames, ahead, counts);
   } catch (error) {
     box.append(element("p", { class: "none" }, `This browser cannot draw in 3-D (${error.message}). The card Picture shows the same people and objects.`));
   }
-  offerPeople(who);
   return view;
 }
 
-function offerPeople(who) {
-  let offered = "";
-  who.addEventListener("change", () => (people.chosen = Number(who.value) || null));
-  const offer = () => {
-    if (String(people.present) === offered) return;
-    offered = String(people.present);
-    who.hidden = people.present.length < 2;
-    who.replaceChildren(...people.present.map((agent) => element("option", { value: String(agent) }, `Person ${agent}`)));
-    who.value = String(shownAgent());
-  };
-  link.on("skeleton", offer);
-  offer();
-}
-
 class Stage {
-  constructor(box, frames, counts) {
-    Object.assign(this, { box, frames, counts, objects: [], floor: null, changed: true, placed: false, drawnAt: 0 });
+  constructor(box, frames, ahead, counts) {
+    Object.assign(this, { box, frames, ahead, counts, objects: [], floor: null, changed: true, placed: false, drawnAt: 0 });
     this.slow = !drawsFast();
     this.renderer = new THREE.WebGLRenderer({ antialias: devicePixelRatio < 2 && !this.slow, alpha: true });
     this.renderer.setPixelRatio(this.slow ? 1 : Math.min(devicePixelRatio, 2));
@@ -87,6 +76,7 @@ class Stage {
     this.scene.add(sun, this.grid, this.world, this.sensor);
     this.bodies = new Bodies(this.world);
     this.things = new Things(this.world);
+    this.ghosts = new Ghosts(this.world);
     this.paint();
   }
 
@@ -102,8 +92,7 @@ class Stage {
     this.grid.add(lines, shade);
     const colour = new THREE.Color(theme("muted"));
     this.sensor.setColors(colour, colour, colour, colour, colour);
-    this.bodies.paint();
-    this.things.paint();
+    for (const drawn of [this.bodies, this.things, this.ghosts]) drawn.paint();
     this.changed = true;
   }
 
@@ -116,6 +105,7 @@ class Stage {
     link.on("frame", () => this.place());
     setInterval(() => isSensorStill() && this.place(), LOOK_MS);
     this.frames.addEventListener("change", () => this.reset());
+    this.ahead.addEventListener("change", () => this.place());
     dark.addEventListener("change", () => this.paint());
     new ResizeObserver(() => this.fit()).observe(this.box);
     this.box.addEventListener("keydown", (event) => this.key(event));
@@ -129,6 +119,8 @@ class Stage {
     const joints = agents.map(({ agent, joints: points }) => ({ agent, points: points.map((point) => point && at(point, worldFromCamera)) }));
     this.bodies.show(joints, shown);
     this.things.show(this.objects, worldFromCamera);
+    const isAhead = this.ahead.checked && !isSensorStill();
+    this.ghosts.show(isAhead ? expected(newestSkeleton(), this.objects) : NOTHING, (point) => at(point, worldFromCamera));
     this.sensor.matrix.copy(worldFromCamera).multiply(new THREE.Matrix4().makeScale(1, -1, -1));
     this.sensor.matrixAutoUpdate = false;
     this.stand(joints.find(({ agent }) => agent === shown)?.points);

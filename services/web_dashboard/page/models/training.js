@@ -15,6 +15,7 @@ export function training() {
 class Training {
   constructor() {
     this.preset = element("select");
+    this.continued = element("input", { type: "checkbox" });
     this.job = new JobView(["train"], (job) => this.ended(job));
     this.line = outcome();
     this.advice = advice();
@@ -22,6 +23,7 @@ class Training {
     this.use = element("div", { class: "buttons", hidden: true }, button("Use this model", () => this.activate(), { kind: "primary" }));
     this.form = element("form", { on: { submit: (event) => this.submitted(event) } },
       element("div", { class: "fields" }, field("Set", setChoice()), field("Training parameters", this.preset)),
+      element("label", { class: "check" }, this.continued, "Also learn how postures go on"),
       element("div", { class: "buttons" }, element("button", { class: "primary" }, "Train")));
     trainer.on(() => this.offer());
     trainer.onChoice(() => this.forget());
@@ -43,7 +45,7 @@ class Training {
   async submitted(event) {
     event.preventDefault();
     this.forget();
-    await this.job.start("train", { set: trainer.set?.name ?? "", preset: this.preset.value });
+    await this.job.start("train", { set: trainer.set?.name ?? "", preset: this.preset.value, continued: this.continued.checked });
     this.offer();
   }
 
