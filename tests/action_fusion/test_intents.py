@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from action_fusion.intake.stream_samples import ObjectsSample
 from action_fusion.intent.approach import FEATURES, approach
 from action_fusion.intent.contact_network import ContactNetwork, shipped_network
-from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_next, touched_place
+from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_next, touched_place, touched_soon
 from action_fusion.intent.recent_paths import ARMS, OBJECTS_LATE_NS, RecentArms, RecentObjects
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
@@ -130,8 +130,10 @@ def test_a_hand_touches_a_thing_at_its_own_side_and_stays_where_it_is_once_there
 
 
 def test_what_both_hands_are_about_to_touch_is_likelier_than_by_either_and_two_things_share_the_next_touch() -> None:
-    np.testing.assert_allclose(touched_next(np.array([[0.8, 0.0], [0.5, 0.0]])), [0.9, 0.0])
-    np.testing.assert_allclose(touched_next(np.array([[0.9, 0.0], [0.0, 0.9]])), [0.5, 0.5])
+    np.testing.assert_allclose(touched_soon(np.array([[0.8, 0.0], [0.5, 0.0]])), [0.9, 0.0])
+    different = touched_soon(np.array([[0.9, 0.0], [0.0, 0.9]]))
+    np.testing.assert_allclose(different, [0.9, 0.9])
+    np.testing.assert_allclose(touched_next(different), [0.5, 0.5])
 
 
 def newest(*also: Message) -> Intended:

@@ -135,9 +135,10 @@ class Intents:
         if seen is None:
             return
         foreseen = self._network.foresee(seen.features)
-        touched = touched_next(foreseen.probability)
+        soon = touched_soon(foreseen.probability)
+        touched = touched_next(soon)
         for k, (number, name) in enumerate(seen.names.items()):
-            if touched[k] < LEAST:
+            if soon[k] < LEAST:
                 continue
             hand = int(foreseen.probability[:, k].argmax())
             contact_s = min(max(float(foreseen.contact_s[hand, k]), SOONEST_S), LATEST_S)
@@ -147,6 +148,7 @@ class Intents:
                 object_name=name,
                 hand=SIDES[hand],
                 probability=float(touched[k]),
+                soon_probability=float(soon[k]),
                 action=action,
                 action_probability=None if action is None else float(touched[k]) * confidence,
                 contact_s=contact_s,
@@ -155,14 +157,21 @@ class Intents:
             )
 
 
-def touched_next(probability: Array) -> Array:
-    """Return the probability that each of n objects is touched next by either hand, (n,), of that of each hand (2, n).
+def touched_soon(probability: Array) -> Array:
+    """Return the probability that each of n objects is touched by either hand, (n,), of that of each hand (2, n).
 
-    The hands are independent, 1 - (1 - p)(1 - q), and all objects together are scaled to sum to 1 at most: what both
-    are about to touch at once, either may touch next.
+    The hands are independent: 1 - (1 - p)(1 - q).
     """
-    by_either = 1 - np.prod(1 - probability, axis=0)
-    touched: Array = by_either / max(float(by_either.sum()), 1.0)
+    by_either: Array = 1 - np.prod(1 - probability, axis=0)
+    return by_either
+
+
+def touched_next(soon: Array) -> Array:
+    """Return the probability that each of n objects is touched first, (n,), of that of being touched at all (n,).
+
+    They are scaled to sum to 1 at most: of two objects that both hands are about to touch, either may be next.
+    """
+    touched: Array = soon / max(float(soon.sum()), 1.0)
     return touched
 
 

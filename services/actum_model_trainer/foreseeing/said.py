@@ -4,7 +4,7 @@ import numpy as np
 
 from action_fusion.intent.approach import FEATURES, approach
 from action_fusion.intent.contact_network import ContactNetwork
-from action_fusion.intent.intents import touched_next
+from action_fusion.intent.intents import touched_soon
 from action_fusion.intent.recent_paths import RecentArms, RecentObjects
 from actum.arrays import Array
 from actum_model_trainer.foreseeing.scoring import HORIZON_S, Said
@@ -12,11 +12,11 @@ from actum_model_trainer.foreseeing.takes import Take
 
 
 def said_by(network: ContactNetwork, take: Take) -> Said:
-    """Return what a network says at each frame: each object's probability that it is touched next."""
+    """Return what a network says at each frame: each object's probability that it is touched within the horizon."""
     scores, times_s = [], []
     for features in features_of(take):
         foreseen = network.foresee(features)
-        scores.append(touched_next(foreseen.probability))
+        scores.append(touched_soon(foreseen.probability))
         nearer = foreseen.probability.argmax(axis=0)
         times_s.append(np.minimum(foreseen.contact_s[nearer, np.arange(len(nearer))], HORIZON_S))
     return Said(take, np.array(scores), np.array(times_s))

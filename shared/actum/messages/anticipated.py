@@ -28,6 +28,10 @@ class Intended(Model):
     """The hand that is on its way; of both hands the likelier one."""
     probability: FiniteFloat
     """The probability that this object is what the person touches next, within 1.5 s, 0 to 1."""
+    soon_probability: FiniteFloat
+    """The probability that this object is touched within 1.5 s, next or after another one, 0 to 1. It is greater than
+    `probability` while both hands are on their way to different objects: either object may be next, and both will be
+    touched."""
     action: Name | None = None
     """The likeliest ongoing action; null where none is known, or where it is marked as one of the other hand."""
     action_probability: FiniteFloat | None = None
@@ -48,8 +52,8 @@ class Intent(Message):
     agent: AgentId
     """Who is about to touch something."""
     intended: Annotated[list[Intended], Field(max_length=MOST_OBJECTS)]
-    """The possible contacts, the likeliest first. The probabilities sum to 1 at most; the rest is the probability that
-    none of these contacts happens. Empty once, when the reach is over; nothing follows until the next reach."""
+    """The possible contacts, the likeliest first. Their `probability` sums to 1 at most; the rest is the probability
+    that none of them happens. Empty once, when the reach is over; nothing follows until the next reach."""
     completeness: FiniteFloat | None = None
     """How much of the ongoing action has been done, 0 to 1; null where no action is known to go on."""
     segment_id: SegmentId | None = None
