@@ -10,6 +10,7 @@ import numpy as np
 from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
 from action_fusion.intent.approach import approach
 from action_fusion.intent.contact_network import ContactNetwork, shipped_network
+from action_fusion.intent.recent_beginnings import RecentBeginnings
 from action_fusion.intent.recent_paths import LONGEST_GAP_NS, SIDES, RecentArms, RecentObjects, arms_of
 from actum.arrays import Array
 from actum.limits import MOST_STREAMS
@@ -53,10 +54,11 @@ class Estimate(NamedTuple):
 
 @dataclass
 class Person:
-    """What is known of a person in one session: the arms, the newest estimates, and the latest reach."""
+    """What is known of a person in one session: arms, objects moved lately, newest estimates, and latest reach."""
 
     session_id: str = ""
     arms: RecentArms = field(default_factory=RecentArms)
+    beginnings: RecentBeginnings = field(default_factory=RecentBeginnings)
     estimates: deque[Estimate] = field(default_factory=lambda: deque(maxlen=MOST_ESTIMATES))
     reached_ns: int | None = None
 
@@ -92,7 +94,7 @@ class Intents:
             person = self._people[agent] = Person(sample.session_id)
         person.arms.append(sample.stamp_ns, arms_of(sample.body))
         ongoing = person.ongoing(sample.stamp_ns)
-        likely = sorted(self._intended(person.arms, sample.stamp_ns, ongoing), key=lambda each: -each.probability)
+        likely = sorted(self._intended(person, sample.stamp_ns, ongoing), key=lambda each: -each.probability)
         before_ns, person.reached_ns = person.reached_ns, sample.stamp_ns if likely else None
         has_ended = before_ns is not None and sample.stamp_ns - before_ns <= LONGEST_GAP_NS
         if not likely and not has_ended:
@@ -129,12 +131,13 @@ class Intents:
             self._people.popitem(last=False)
         return person
 
-    def _intended(self, arms: RecentArms, stamp_ns: int, ongoing: Estimate | None) -> Iterator[Intended]:
+    def _intended(self, person: Person, stamp_ns: int, ongoing: Estimate | None) -> Iterator[Intended]:
         """Yield the contacts that are probable, each by the likelier hand."""
-        seen = approach(arms, self._objects, stamp_ns) if self._objects else None
+        seen = approach(person.arms, self._objects, stamp_ns) if self._objects else None
+        begun = person.beginnings.with_moved(stamp_ns, [] if seen is None else seen.moved)
         if seen is None:
             return
-        foreseen = self._network.foresee(seen.features)
+        foreseen = self._network.foresee(seen.features, begun)
         soon = touched_soon(foreseen.probability)
         touched = touched_next(soon)
         for k, (number, name) in enumerate(seen.names.items()):
