@@ -8,8 +8,8 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
-from action_fusion.intent.approach import approach
-from action_fusion.intent.contact_network import ContactNetwork, shipped_network
+from action_fusion.intent.approach import Approach, approach
+from action_fusion.intent.contact_network import ContactNetwork, Foreseen, shipped_network
 from action_fusion.intent.recent_beginnings import RecentBeginnings
 from action_fusion.intent.recent_paths import LONGEST_GAP_NS, SIDES, RecentArms, RecentObjects, arms_of
 from actum.arrays import Array
@@ -133,16 +133,14 @@ class Intents:
 
     def _intended(self, person: Person, stamp_ns: int, ongoing: Estimate | None) -> Iterator[Intended]:
         """Yield the contacts that are probable, each by the likelier hand."""
-        seen = approach(person.arms, self._objects, stamp_ns) if self._objects else None
-        begun = person.beginnings.with_moved(stamp_ns, [] if seen is None else seen.moved)
-        if seen is None:
+        known = self._foreseen(person, stamp_ns)
+        if known is None:
             return
-        foreseen = self._network.foresee(seen.features, begun)
+        seen, foreseen = known
         soon = touched_soon(foreseen.probability)
         touched = touched_next(soon)
-        for k, (number, name) in enumerate(seen.names.items()):
-            if soon[k] < LEAST:
-                continue
+        for k in np.flatnonzero(soon >= LEAST).tolist():
+            number, name = [*seen.names.items()][k]
             hand = int(foreseen.probability[:, k].argmax())
             contact_s = min(max(float(foreseen.contact_s[hand, k]), SOONEST_S), LATEST_S)
             action, confidence = _done(ongoing, SIDES[hand])
@@ -158,6 +156,12 @@ class Intents:
                 contact_std_s=contact_s * float(self._network.time_sd),
                 place_m=touched_place(seen.hands_m[hand], seen.objects_m[k]).tolist(),
             )
+
+    def _foreseen(self, person: Person, stamp_ns: int) -> tuple[Approach, Foreseen] | None:
+        """Return how the hands approach the objects, and the contacts foreseen; None where no object is known."""
+        seen = approach(person.arms, self._objects, stamp_ns) if self._objects else None
+        begun = person.beginnings.with_moved(stamp_ns, [] if seen is None else seen.moved)
+        return None if seen is None else (seen, self._network.foresee(seen.features, begun))
 
 
 def touched_soon(probability: Array) -> Array:
