@@ -22,7 +22,8 @@ def target(intent, reaches):
     if likeliest is None:
         return None
     chosen = chosen if 0 <= stamp_ns - last_ns < LOST_NS else None
-    is_new = not chosen and likeliest["probability"] >= LEAST_PROBABILITY and likeliest["contact_s"] >= LEAST_AHEAD_S
+    is_sure = likeliest["soon_probability"] >= LEAST_PROBABILITY and likeliest["contact_s"] >= LEAST_AHEAD_S
+    is_new = is_sure and not chosen
     reaches[agent] = stamp_ns, likeliest if is_new else chosen
     return likeliest if is_new else None
 

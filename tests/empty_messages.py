@@ -57,9 +57,10 @@ def action(start_ns: int, end_ns: int | None, segment_id: str = "one", **fields:
 
 def contact(probability: float, **fields: Any) -> Intended:
     """A contact of the right hand with the cup that may come half a second later."""
-    given = {"action": "lift", "object_id": 2, "object_name": "cup", "hand": "right", "probability": probability}
+    given = {"action": "lift", "object_id": 2, "object_name": "cup", "hand": "right"}
+    likely = {"probability": probability, "soon_probability": probability}
     return Intended.model_validate(
-        {**given, "contact_s": 0.5, "contact_std_s": 0.15, "place_m": [0.1, 0.2, 1.5], **fields}
+        {**given, **likely, "contact_s": 0.5, "contact_std_s": 0.15, "place_m": [0.1, 0.2, 1.5], **fields}
     )
 
 

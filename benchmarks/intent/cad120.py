@@ -11,7 +11,7 @@ from action_fusion.intent.recent_paths import ARMS
 from actum.arrays import Array
 from actum.node import SECOND_NS
 from actum_model_trainer.foreseeing import baselines
-from actum_model_trainer.foreseeing.said import features_of
+from actum_model_trainer.foreseeing.said import seen_in
 from actum_model_trainer.foreseeing.takes import Contact, Take
 
 FILE = "lighten_poses.npz"
@@ -68,7 +68,7 @@ def table(folder: Path) -> Iterator[str]:
     takes, network = list(reaches(folder)), shipped_network()
 
     def ours(take: Take) -> Array:
-        return np.array([network.foresee(each).probability.sum(axis=0) for each in features_of(take)])
+        return np.array([network.foresee(*each).probability.sum(axis=0) for each in zip(*seen_in(take), strict=True)])
 
     methods = {"actum": ours, "nearest object": baselines.nearest, "constant velocity": baselines.constant_velocity}
     chance = float(np.mean([1 / len(take.objects_m) for take in takes]))

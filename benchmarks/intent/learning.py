@@ -6,11 +6,12 @@ DIR is the folder of the OptiTrack takes; without it the network learns from sim
 """
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple, Self
 
 import numpy as np
+from benchmarks.intent.balancing import balance, softmax
 from benchmarks.intent.takes import bare, captured, everyday, simulated, without_body
 
 import action_fusion.intent
@@ -18,7 +19,7 @@ from action_fusion.intent.approach import FEATURES
 from action_fusion.intent.contact_network import SHIPPED, WIDEST, ContactNetwork
 from actum.arrays import Array
 from actum.node import SECOND_NS
-from actum_model_trainer.foreseeing.said import features_of
+from actum_model_trainer.foreseeing.said import seen_in
 from actum_model_trainer.foreseeing.scoring import HORIZON_S
 from actum_model_trainer.foreseeing.takes import Take
 
@@ -35,6 +36,8 @@ RATE, WARM_UP, DECAY = 4e-3, 100, 1e-5
 """Adam's rate, the steps in which it rises, and the decay of the weights."""
 CAPTURED_WEIGHT = 20.0
 """Weight of an instant of motion capture beside a simulated one: there are a hundred times fewer."""
+USUAL_SHARE = 0.25
+"""Share of that weight where it is learnt how often people act: motion capture begins and ends with actions."""
 STRIDE = 2
 """Of the instants before no contact, one of so many is learnt from, with that weight."""
 MOST_OBJECTS = 5
@@ -43,13 +46,14 @@ MOST_OBJECTS = 5
 
 class Examples(NamedTuple):
     """Instants (N,) of hands: features (N, objects, features), which objects there are, which is touched next if any,
-    their weights, and the time until the touch (s)."""
+    their weights, the time until the touch (s), and how many objects have begun to move lately."""
 
     features: Array
     present: Array
     touched: Array
     weights: Array
     ahead_s: Array
+    begun: Array
 
     @classmethod
     def of(cls, takes: Iterable[Take], weight: float = 1.0) -> Self:
@@ -63,7 +67,7 @@ class Examples(NamedTuple):
 
 
 def _of_take(take: Take, weight: float) -> tuple[Array, ...]:
-    features = features_of(take)
+    features, begun = seen_in(take)
     frames, hands, objects = features.shape[:3]
     next_s, touched = np.full((frames, hands), np.inf), np.zeros((frames, hands, MOST_OBJECTS), np.float32)
     numbers = sorted(take.objects_m)
@@ -78,16 +82,21 @@ def _of_take(take: Take, weight: float) -> tuple[Array, ...]:
     kept = np.isfinite(features).all(axis=(2, 3)) & (near | (np.arange(frames) % STRIDE == 0)[:, None])
     present = np.broadcast_to(np.arange(MOST_OBJECTS) < objects, touched.shape)
     weights = weight * np.where(near, 1.0, STRIDE)
-    return padded[kept], present[kept], touched[kept], weights[kept], next_s[kept]
+    each_begun = np.broadcast_to(begun[:, None], near.shape)
+    return padded[kept], present[kept], touched[kept], weights[kept], next_s[kept], each_begun[kept]
 
 
-def learnt(examples: Examples, networks: int = NETWORKS, steps: int = STEPS) -> ContactNetwork:
+def learnt(
+    simulated: Examples, real: Sequence[Examples], networks: int = NETWORKS, steps: int = STEPS
+) -> ContactNetwork:
     """Learn the networks, each from another beginning, and the time to contact."""
+    examples = Examples.joined([simulated, *real])
     there = examples.features[examples.present]
     mean, sd = there.mean(axis=0, dtype=np.float64), there.std(axis=0, dtype=np.float64) + 1e-6
     unit = np.clip((examples.features - mean) / sd, -WIDEST, WIDEST).astype(np.float32)
-    weights = [_network(unit, examples, steps, seed) for seed in range(networks)]
-    names = ("into", "into_bias", "between", "between_bias", "out", "out_bias")
+    usual = Examples.joined([simulated, *(each._replace(weights=USUAL_SHARE * each.weights) for each in real)])
+    weights = [_balanced(_network(unit, examples, steps, seed), unit, usual) for seed in range(networks)]
+    names = ("into", "into_bias", "between", "between_bias", "out", "out_bias", "lively")
     layers = {name: np.array([each[k] for each in weights]) for k, name in enumerate(names)}
     return ContactNetwork.of({"mean": mean, "sd": sd, **layers, **_time_to_contact(unit, examples)})
 
@@ -120,14 +129,21 @@ def _slopes(weights: list[Array], unit: Array, present: Array, touched: Array, w
     rows = unit.reshape(-1, FEATURES)
     first = np.tanh(rows @ into + into_bias)
     second = np.tanh(first @ between + between_bias)
-    scores = np.where(present, (second @ out + out_bias).reshape(present.shape), -np.inf)
-    most = np.maximum(scores.max(axis=1, keepdims=True), 0.0)
-    likely = np.exp(scores - most)
-    probability = likely / (likely.sum(axis=1, keepdims=True) + np.exp(-most))
+    probability = softmax(np.where(present, (second @ out + out_bias).reshape(present.shape), -np.inf))
     wrong = ((probability - touched) * (worth / len(unit))[:, None]).astype(np.float32).ravel()
     by_second = np.outer(wrong, out) * (1 - second**2)
     by_first = by_second @ between.T * (1 - first**2)
     return [rows.T @ by_first, by_first.sum(0), first.T @ by_second, by_second.sum(0), second.T @ wrong, wrong.sum()]
+
+
+def _balanced(weights: list[Array], unit: Array, examples: Examples) -> list[Array]:
+    """Return the weights of a network whose scores are balanced, and what the objects moved lately add to them."""
+    into, into_bias, between, between_bias, out, out_bias = weights
+    hidden = (np.tanh(np.tanh(part @ into + into_bias) @ between + between_bias) for part in np.array_split(unit, 100))
+    scores = np.where(examples.present, np.concatenate([part @ out + out_bias for part in hidden]), -np.inf)
+    found = balance(scores, examples.touched, examples.weights, examples.begun)
+    balanced = [found.scale * out, found.scale * out_bias + found.offset, np.array(found.lively)]
+    return [into, into_bias, between, between_bias, *balanced]
 
 
 def _time_to_contact(unit: Array, examples: Examples) -> dict[str, Array]:
@@ -154,8 +170,8 @@ def background_takes() -> list[Take]:
 def main() -> None:
     """Learn from all that there is, and write the network beside the code that uses it."""
     real = captured(Path(sys.argv[1])) if len(sys.argv) > 1 else []
-    simulated_ones = [Examples.of(acting_takes()), Examples.of(background_takes(), EVERYDAY_WEIGHT)]
-    network = learnt(Examples.joined([*simulated_ones, *(Examples.of([take], CAPTURED_WEIGHT) for take in real)]))
+    usual = Examples.joined([Examples.of(acting_takes()), Examples.of(background_takes(), EVERYDAY_WEIGHT)])
+    network = learnt(usual, [Examples.of([take], CAPTURED_WEIGHT) for take in real])
     path = Path(action_fusion.intent.__file__).with_name(SHIPPED)
     arrays = {name: getattr(network, name).astype(np.float32) for name in ContactNetwork.__dataclass_fields__}
     np.savez(path, **arrays)

@@ -5,11 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from benchmarks.bimacs_tracks import read
+from benchmarks.bimacs_tracks import Tracks, read
 
 from action_fusion.intent.recent_paths import ARMS, SIDES
+from actum.messages import Truth
 from actum.node import SECOND_NS
-from actum_dataset_importer.bimacs import read_take, take_files
+from actum_dataset_importer.bimacs import HandsTake, read_take, take_files
 from actum_model_trainer.foreseeing.takes import Contact, Take
 from scene_simulator.everyday import chosen
 from scene_simulator.noise import SkeletonNoise
@@ -131,16 +132,27 @@ def _captured(file: Path) -> Take:
     arms_m = np.full((len(tracks.stamps_ns), len(ARMS), 3), np.nan)
     arms_m[:, :2] = np.stack([tracks.hands["right"], tracks.hands["left"]], axis=1)
     objects_m = {n: np.where(tracks.seen[n][:, None], path_m, np.nan) for n, path_m in tracks.objects.items()}
-    contacts = []
-    for truth in take.truths:
-        if truth.action != "approach" or truth.object_id not in objects_m or truth.kind != "end":
-            continue
-        start_ns, end_ns = tracks.bounds[truth.segment_id]
-        path_m = tracks.objects[truth.object_id]
-        first = int(np.searchsorted(tracks.stamps_ns, start_ns))
-        latest = int(np.searchsorted(tracks.stamps_ns, end_ns + LATEST_MOTION_S * SECOND_NS))
-        rest_m = np.median(path_m[max(first - 20, 0) : first + 5], axis=0)
-        moved = np.linalg.norm(path_m[first:latest] - rest_m, axis=1) > MOVED_M
-        at_ns = int(tracks.stamps_ns[first + moved.argmax()]) if moved.any() else end_ns
-        contacts.append(Contact(at_ns, SIDES.index(tracks.actors[truth.segment_id]), truth.object_id, "approach"))
-    return Take(take.name, tracks.stamps_ns, arms_m, objects_m, sorted(contacts))
+    contacts = sorted(_contact(tracks, truth) for truth in _reaches(take, tracks))
+    return Take(take.name, tracks.stamps_ns, arms_m, objects_m, contacts)
+
+
+def _reaches(take: HandsTake, tracks: Tracks) -> Iterator[Truth]:
+    """Yield the labelled approaches, and the lifts of what that hand is not labelled to have approached."""
+    known = [truth for truth in take.truths if truth.kind == "end" and truth.object_id in tracks.objects]
+    hands = {truth.segment_id: (tracks.actors[truth.segment_id], truth.object_id) for truth in known}
+    approached = {hands[truth.segment_id] for truth in known if truth.action == "approach"}
+    for truth in known:
+        if truth.action == "approach" or (truth.action == "lift" and hands[truth.segment_id] not in approached):
+            yield truth
+
+
+def _contact(tracks: Tracks, reach: Truth) -> Contact:
+    """Return the first motion of the object that is reached for, or the end of the reach."""
+    start_ns, end_ns = tracks.bounds[reach.segment_id]
+    path_m = tracks.objects[reach.object_id]
+    first = int(np.searchsorted(tracks.stamps_ns, start_ns))
+    latest = int(np.searchsorted(tracks.stamps_ns, end_ns + LATEST_MOTION_S * SECOND_NS))
+    rest_m = np.median(path_m[max(first - 20, 0) : first + 5], axis=0)
+    moved = np.linalg.norm(path_m[first:latest] - rest_m, axis=1) > MOVED_M
+    at_ns = int(tracks.stamps_ns[first + moved.argmax()]) if moved.any() else end_ns
+    return Contact(at_ns, SIDES.index(tracks.actors[reach.segment_id]), reach.object_id, "approach")

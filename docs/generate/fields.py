@@ -24,7 +24,7 @@ UNITS = {
     "objects_present": "id", "frames": "count", "missed": "count", "handled": "count", "drops": "count",
     "rejects": "count", "counts": "count", "count": "count", "rates": "Hz", "rate_hz": "Hz", "confidence": "0 to 1",
     "activations": "−1 to 1", "familiarity": "0 to 1", "completeness": "0 to 1",
-    "probability": "0 to 1", "action_probability": "0 to 1",
+    "probability": "0 to 1", "soon_probability": "0 to 1", "action_probability": "0 to 1",
     "quaternion_xyzw": "1", "up_in_camera": "any length", "width": "px", "height": "px", "K": "px", "distortion": "1",
     "skeleton_from_image": "m", "ego_from_camera": "m", "joints": "m", "upright": "m", "motion": "m", "shape": "count",
     "asked": "count", "counted": "count", "seconds": "s", "people": "count", "done": "0 to 1", "revision": "count",

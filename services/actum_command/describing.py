@@ -144,7 +144,7 @@ def _intent(message: Intent) -> str:
     likeliest = message.intended[0]
     reach = f"reaches for {escape(likeliest.object_name)} ({likeliest.object_id}) with the {likeliest.hand} hand"
     when = f"contact in {likeliest.contact_s:.2f} s ± {likeliest.contact_std_s:.2f}"
-    return f"{likeliest.probability:.2f}  {reach}, {when}"
+    return f"{likeliest.soon_probability:.2f}  {reach}, {when}"
 
 
 def _continuation(message: Continuation) -> str:

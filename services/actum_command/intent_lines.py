@@ -44,12 +44,12 @@ class IntentLines:
         if not message.intended:
             return before is not None
         likeliest = message.intended[0]
-        if likeliest.probability < LEAST:
+        if likeliest.soon_probability < LEAST:
             if before is not None:
                 self._told[person] = replace(before, stamp_ns=message.stamp_ns)
             return False
         known = before.passed if before is not None and before.object_id == likeliest.object_id else -1
-        passed = max(known, sum(likeliest.probability >= level for level in LEVELS))
+        passed = max(known, sum(likeliest.soon_probability >= level for level in LEVELS))
         self._told[person] = Told(message.stamp_ns, likeliest.object_id, passed)
         if len(self._told) > MOST_STREAMS:
             del self._told[next(iter(self._told))]

@@ -191,6 +191,7 @@ def _contact(intended: Intended) -> Any:
         object_name=intended.object_name,
         hand=intended.hand,
         probability=intended.probability,
+        soon_probability=intended.soon_probability,
         action=intended.action or "",
         action_probability=intended.action_probability or 0.0,
         contact_s=intended.contact_s,

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from action_fusion.intake.stream_samples import ObjectsSample
 from action_fusion.intent.approach import FEATURES, approach
 from action_fusion.intent.contact_network import ContactNetwork, shipped_network
-from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_next, touched_place
+from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_next, touched_place, touched_soon
+from action_fusion.intent.recent_beginnings import MOST_BEGINNINGS
 from action_fusion.intent.recent_paths import ARMS, OBJECTS_LATE_NS, RecentArms, RecentObjects
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
@@ -96,10 +97,13 @@ def test_objects_and_actions_that_come_up_to_a_tenth_of_a_second_late_change_no_
     assert intents_of(ActionFusion(Settings()), *arriving) == said
 
 
-@given(features=st.lists(st.floats(-1e3, 1e3), min_size=2 * 3 * FEATURES, max_size=2 * 3 * FEATURES))
+@given(
+    features=st.lists(st.floats(-1e3, 1e3), min_size=2 * 3 * FEATURES, max_size=2 * 3 * FEATURES),
+    begun=st.floats(0, MOST_BEGINNINGS),
+)
 @settings(max_examples=50, deadline=None)
-def test_of_each_hand_the_probabilities_sum_to_1_at_most_whatever_is_seen(features: list[float]) -> None:
-    foreseen = shipped_network().foresee(np.array(features).reshape(2, 3, FEATURES))
+def test_of_each_hand_the_probabilities_sum_to_1_at_most_whatever_is_seen(features: list[float], begun: float) -> None:
+    foreseen = shipped_network().foresee(np.array(features).reshape(2, 3, FEATURES), begun)
     assert (foreseen.probability >= 0).all()
     assert (foreseen.probability.sum(axis=1) <= 1 + 1e-9).all()
     assert (foreseen.contact_s > 0).all()
@@ -108,20 +112,20 @@ def test_of_each_hand_the_probabilities_sum_to_1_at_most_whatever_is_seen(featur
 def test_a_hand_that_is_not_known_touches_nothing() -> None:
     features = np.zeros((2, 2, FEATURES))
     features[1] = np.nan
-    foreseen = shipped_network().foresee(features)
+    foreseen = shipped_network().foresee(features, 0.0)
     assert (foreseen.probability[1] == 0).all()
 
 
 def test_without_objects_nothing_is_foreseen() -> None:
-    assert shipped_network().foresee(np.zeros((2, 0, FEATURES))).probability.shape == (2, 0)
+    assert shipped_network().foresee(np.zeros((2, 0, FEATURES)), 0.0).probability.shape == (2, 0)
 
 
 def test_the_order_of_the_objects_does_not_matter() -> None:
     rng = np.random.default_rng(0)
     network: ContactNetwork = shipped_network()
     features = network.mean + network.sd * rng.normal(size=(2, 4, FEATURES))
-    turned = network.foresee(features[:, ::-1])
-    np.testing.assert_allclose(turned.probability[:, ::-1], network.foresee(features).probability, rtol=1e-12)
+    turned = network.foresee(features[:, ::-1], 1.0)
+    np.testing.assert_allclose(turned.probability[:, ::-1], network.foresee(features, 1.0).probability, rtol=1e-12)
 
 
 def test_a_hand_touches_a_thing_at_its_own_side_and_stays_where_it_is_once_there() -> None:
@@ -130,8 +134,10 @@ def test_a_hand_touches_a_thing_at_its_own_side_and_stays_where_it_is_once_there
 
 
 def test_what_both_hands_are_about_to_touch_is_likelier_than_by_either_and_two_things_share_the_next_touch() -> None:
-    np.testing.assert_allclose(touched_next(np.array([[0.8, 0.0], [0.5, 0.0]])), [0.9, 0.0])
-    np.testing.assert_allclose(touched_next(np.array([[0.9, 0.0], [0.0, 0.9]])), [0.5, 0.5])
+    np.testing.assert_allclose(touched_soon(np.array([[0.8, 0.0], [0.5, 0.0]])), [0.9, 0.0])
+    different = touched_soon(np.array([[0.9, 0.0], [0.0, 0.9]]))
+    np.testing.assert_allclose(different, [0.9, 0.9])
+    np.testing.assert_allclose(touched_next(different), [0.5, 0.5])
 
 
 def newest(*also: Message) -> Intended:

@@ -1,5 +1,6 @@
 """With each posture of a reach the fusion puts what the person is about to touch; an empty intent ends the reach."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
@@ -8,16 +9,20 @@ from action_fusion.node import ActionFusion
 from actum.messages import Event, Intent, Message, Posture
 from actum.node import SECOND_NS
 from fused import events_of, intents_of
-from scenes import FRAME_NS, acting_on, action, at
+from scenes import FRAME_NS, REST_LEFT, Scene, acting_on, action, at, moving
 
 REACH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65), others={2: (-0.4, 0.0, 0.5)})
 """The right hand arrives at the cup after 0.8 s; the box lies on the other side."""
 
 
-def stream(start_s: float = -0.5, end_s: float = 1.6, **fields: object) -> list[Message]:
+WITH_BOTH_HANDS = replace(REACH, left_hand=moving((0.0, REST_LEFT), (0.8, (-0.4, 0.08, 0.5))))
+"""The left hand arrives at the box at the same instant."""
+
+
+def stream(start_s: float = -0.5, end_s: float = 1.6, scene: Scene = REACH, **fields: object) -> list[Message]:
     """The scene's postures and objects as they are captured, the fields of postures as given."""
-    postures = [posture.model_copy(update=fields) for posture in REACH.postures(start_s, end_s)]
-    return sorted([*postures, *REACH.sightings(start_s, end_s)], key=lambda message: message.stamp_ns or 0)
+    postures = [posture.model_copy(update=fields) for posture in scene.postures(start_s, end_s)]
+    return sorted([*postures, *scene.sightings(start_s, end_s)], key=lambda message: message.stamp_ns or 0)
 
 
 def test_before_the_hand_arrives_an_intent_names_object_and_hand(node: ActionFusion) -> None:
@@ -43,6 +48,16 @@ def test_the_likeliest_contact_comes_first_and_the_probabilities_sum_to_1_at_mos
         probabilities = [each.probability for each in intent.intended]
         assert probabilities == sorted(probabilities, reverse=True)
         assert sum(probabilities) <= 1 + 1e-9
+        assert all(each.probability <= each.soon_probability <= 1 for each in intent.intended)
+
+
+def test_while_each_hand_reaches_for_another_object_both_will_be_touched_and_either_may_be_next(
+    node: ActionFusion,
+) -> None:
+    newest = intents_of(node, *stream(end_s=0.75, scene=WITH_BOTH_HANDS))[-1].intended
+    assert {(each.object_name, each.hand) for each in newest} == {("cup", "right"), ("box", "left")}
+    assert all(each.soon_probability > 0.8 for each in newest)
+    assert all(0.3 < each.probability < 0.7 for each in newest)
 
 
 def test_a_reach_ends_with_one_empty_intent_and_nothing_after_it(node: ActionFusion) -> None:

@@ -63,6 +63,20 @@ def test_what_is_announced_for_longer_than_the_horizon_is_announced_anew() -> No
     assert result.median_s == pytest.approx(0.4, abs=0.1)
 
 
+def test_two_objects_that_both_hands_are_about_to_touch_are_both_announced_for_as_long_as_both_are_likely() -> None:
+    """That one or the other is likelier from frame to frame makes no further announcement."""
+    take = reach()
+    both = replace(take, contacts=[*take.contacts, Contact(round(6.1 * SECOND_NS), 1, 2, "hold")])
+    told = (5.4 * SECOND_NS <= STAMPS_NS) & (STAMPS_NS < 6 * SECOND_NS)
+    swaying = np.where(np.arange(FRAMES)[:, None] % 20 < 10, [0.8, 0.9], [0.9, 0.8])
+    scored = Said(both, np.where(told[:, None], swaying, 0.0))
+    assert [one.number for one in scored.announcements(0.5)] == [1, 2]
+    result = ahead([scored], 0.5)
+    assert (result.precision, result.recall) == (1.0, 1.0)
+    assert result.median_s == pytest.approx(0.65, abs=0.5 / RATE_HZ)
+    assert before([scored], 0.5).brier == pytest.approx(0.1**2 + 0.2**2, abs=1e-9)
+
+
 def test_the_earliest_threshold_leaves_out_what_is_said_too_often_in_vain() -> None:
     sure, unsure = said(1, 5.6, 6.0, 0.9), said(2, 1.0, 2.0, 0.4)
     both = Said(sure.take, np.maximum(sure.scores, unsure.scores))

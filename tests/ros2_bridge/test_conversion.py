@@ -48,8 +48,8 @@ REACHING = Intent(
     stamp_ns=AT_NS, sensor="kinect0", agent=2, completeness=0.25, segment_id="auto-1",
     intended=[
         Intended(
-            action="lift", object_id=3, object_name="cup", hand="left", probability=0.75, contact_s=0.5,
-            contact_std_s=0.125, place_m=[0.1, 0.2, 1.5],
+            action="lift", object_id=3, object_name="cup", hand="left", probability=0.75, soon_probability=0.875,
+            contact_s=0.5, contact_std_s=0.125, place_m=[0.1, 0.2, 1.5],
         ),
     ],
 )  # fmt: skip

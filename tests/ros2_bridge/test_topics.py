@@ -41,8 +41,8 @@ def test_types_have_the_hashes_by_which_ros_knows_them() -> None:
 
 OWN_HASHES = {
     "actum_msgs/msg/ActionEvent": "RIHS01_5ff55f7cce7bd2e62ca7023b5a2d3676ab2185747e922c831c63cca4fa5a639e",
-    "actum_msgs/msg/ActionIntent": "RIHS01_bea2105f464a869011676c1e27e0aec06d15aa833de0487f00ef82e618f1d01c",
-    "actum_msgs/msg/IntendedContact": "RIHS01_d0a7dcef45a32c2dac299e2b64ec6d64ea13b41dbcb78cb06f5012958eb4d5ea",
+    "actum_msgs/msg/ActionIntent": "RIHS01_dd63e3c73b53845c4cea56b8f77c6a3e44fa2559f61cf18b0b3d1cd9d146989e",
+    "actum_msgs/msg/IntendedContact": "RIHS01_3fa8aa0d7792ee51acd91e6117c457b9f2447c7972b660ae0aa0872c8c6ad3e2",
     "actum_msgs/msg/PersonAction": "RIHS01_5b617083ac53fc605a8b45c54b6dc15db9e083cf6a1d0833810adac1b678d2c9",
 }
 

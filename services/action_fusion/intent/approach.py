@@ -22,6 +22,9 @@ SHORT_M = 0.02
 """A hand's way (m) that is no more than noise, and has no direction."""
 NEAR_M = 0.03
 """Added to a distance before its logarithm is taken (m)."""
+MOVES_MPS, IN_HAND_M = 0.1, 0.17
+"""An object faster than this (m/s) moves: trackers' noise is less. It moves in a hand whose joint is so near (m) to its
+middle, as in the recordings learnt from."""
 SMALLEST_M = 1e-9
 """A hand nearer to an object's middle (m) is in no direction from it."""
 FASTEST_MPS = 1.0
@@ -41,12 +44,14 @@ class Approach(NamedTuple):
         features: (2, n, `FEATURES`), of right and left hand; NaN where a hand is not known.
         hands_m: (2, 3), the hands in the camera frame.
         objects_m: (n, 3), the objects' middles in the camera frame.
+        moved: the numbers of the objects that move in a hand.
     """
 
     names: dict[int, str]
     features: Array
     hands_m: Array
     objects_m: Array
+    moved: list[int]
 
 
 def approach(arms: RecentArms, objects: RecentObjects, stamp_ns: int) -> Approach:
@@ -60,6 +65,8 @@ def approach(arms: RecentArms, objects: RecentObjects, stamp_ns: int) -> Approac
     ways = _ways(hands_m[0], hands_m[1 : 1 + len(HAND_S)], now_m)
     ahead_m = hands_m[0] + (hands_m[0] - hands_m[2]) * (AHEAD_S / HAND_S[1])
     speeds_mps = np.minimum(np.linalg.norm(now_m - before_m, axis=1) / OBJECT_S, FASTEST_MPS)
+    in_hand = (speeds_mps > MOVES_MPS) & (np.fmin(*distances_m) < IN_HAND_M)
+    moved = [number for number, is_moved in zip(names, in_hand.tolist(), strict=True) if is_moved]
     features = [
         distances_m,
         np.log(distances_m + NEAR_M),
@@ -68,7 +75,7 @@ def approach(arms: RecentArms, objects: RecentObjects, stamp_ns: int) -> Approac
         np.broadcast_to(speeds_mps, distances_m.shape),
         *_of_body(joints_m, apart_m / np.maximum(distances_m, SMALLEST_M)[..., None], now_m),
     ]
-    return Approach(names, np.stack(features, axis=2), hands_m[0], now_m)
+    return Approach(names, np.stack(features, axis=2), hands_m[0], now_m, moved)
 
 
 def _ways(hands_m: Array, earlier_m: Array, objects_m: Array) -> list[Array]:

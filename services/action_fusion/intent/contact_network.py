@@ -27,12 +27,14 @@ class ContactNetwork:
     """Several networks of two hidden layers whose probabilities are averaged; one for all objects and both hands.
 
     The score of an object is that of its own approach, softmax over the objects and a score of 0 for none of them.
+    The more objects the person has begun to move lately, the higher are all scores.
 
     Attributes:
         mean, sd: (features,), of the training data.
         into: (networks, features, hidden), with `into_bias` (networks, hidden).
         between: (networks, hidden, hidden), with `between_bias` (networks, hidden).
         out: (networks, hidden), with `out_bias` (networks,).
+        lively: (networks,), added to every score, times the logarithm of 1 + how many have begun to move lately.
         time: (features + 1,), weights of the logarithm of the time to contact (s), the last one constant.
         time_sd: standard deviation of that logarithm.
     """
@@ -45,6 +47,7 @@ class ContactNetwork:
     between_bias: Array
     out: Array
     out_bias: Array
+    lively: Array
     time: Array
     time_sd: Array
 
@@ -53,15 +56,20 @@ class ContactNetwork:
         """Build a network of its arrays."""
         return cls(**{name: np.asarray(arrays[name], np.float64) for name in cls.__dataclass_fields__})
 
-    def foresee(self, features: Array) -> Foreseen:
-        """Return the probability of each contact of the hands with n objects, (2, n, features); NaN counts as none."""
+    def foresee(self, features: Array, begun: float) -> Foreseen:
+        """Return the probability of each contact of the hands with n objects.
+
+        Args:
+            features: (2, n, features); NaN counts as no contact.
+            begun: how many objects have begun to move lately.
+        """
         unit = np.clip((features - self.mean) / self.sd, -WIDEST, WIDEST)
         known: Mask = np.isfinite(unit.sum(axis=2))
         unit = np.where(known[..., None], unit, 0.0)
         rows = unit.reshape(-1, unit.shape[2])
         hidden = np.tanh(rows @ self.into + self.into_bias[:, None])
         hidden = np.tanh(hidden @ self.between + self.between_bias[:, None])
-        scores = np.einsum("krh,kh->kr", hidden, self.out) + self.out_bias[:, None]
+        scores = np.einsum("krh,kh->kr", hidden, self.out) + (self.out_bias + self.lively * np.log1p(begun))[:, None]
         scores = np.where(known, scores.reshape(len(self.out), *known.shape), -np.inf)
         most = np.maximum(scores.max(axis=2, keepdims=True, initial=0.0), 0.0)
         likely = np.exp(scores - most)

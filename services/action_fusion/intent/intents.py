@@ -8,8 +8,9 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
-from action_fusion.intent.approach import approach
-from action_fusion.intent.contact_network import ContactNetwork, shipped_network
+from action_fusion.intent.approach import Approach, approach
+from action_fusion.intent.contact_network import ContactNetwork, Foreseen, shipped_network
+from action_fusion.intent.recent_beginnings import RecentBeginnings
 from action_fusion.intent.recent_paths import LONGEST_GAP_NS, SIDES, RecentArms, RecentObjects, arms_of
 from actum.arrays import Array
 from actum.limits import MOST_STREAMS
@@ -53,10 +54,11 @@ class Estimate(NamedTuple):
 
 @dataclass
 class Person:
-    """What is known of a person in one session: the arms, the newest estimates, and the latest reach."""
+    """What is known of a person in one session: arms, objects moved lately, newest estimates, and latest reach."""
 
     session_id: str = ""
     arms: RecentArms = field(default_factory=RecentArms)
+    beginnings: RecentBeginnings = field(default_factory=RecentBeginnings)
     estimates: deque[Estimate] = field(default_factory=lambda: deque(maxlen=MOST_ESTIMATES))
     reached_ns: int | None = None
 
@@ -92,7 +94,7 @@ class Intents:
             person = self._people[agent] = Person(sample.session_id)
         person.arms.append(sample.stamp_ns, arms_of(sample.body))
         ongoing = person.ongoing(sample.stamp_ns)
-        likely = sorted(self._intended(person.arms, sample.stamp_ns, ongoing), key=lambda each: -each.probability)
+        likely = sorted(self._intended(person, sample.stamp_ns, ongoing), key=lambda each: -each.probability)
         before_ns, person.reached_ns = person.reached_ns, sample.stamp_ns if likely else None
         has_ended = before_ns is not None and sample.stamp_ns - before_ns <= LONGEST_GAP_NS
         if not likely and not has_ended:
@@ -129,16 +131,16 @@ class Intents:
             self._people.popitem(last=False)
         return person
 
-    def _intended(self, arms: RecentArms, stamp_ns: int, ongoing: Estimate | None) -> Iterator[Intended]:
+    def _intended(self, person: Person, stamp_ns: int, ongoing: Estimate | None) -> Iterator[Intended]:
         """Yield the contacts that are probable, each by the likelier hand."""
-        seen = approach(arms, self._objects, stamp_ns) if self._objects else None
-        if seen is None:
+        known = self._foreseen(person, stamp_ns)
+        if known is None:
             return
-        foreseen = self._network.foresee(seen.features)
-        touched = touched_next(foreseen.probability)
-        for k, (number, name) in enumerate(seen.names.items()):
-            if touched[k] < LEAST:
-                continue
+        seen, foreseen = known
+        soon = touched_soon(foreseen.probability)
+        touched = touched_next(soon)
+        for k in np.flatnonzero(soon >= LEAST).tolist():
+            number, name = [*seen.names.items()][k]
             hand = int(foreseen.probability[:, k].argmax())
             contact_s = min(max(float(foreseen.contact_s[hand, k]), SOONEST_S), LATEST_S)
             action, confidence = _done(ongoing, SIDES[hand])
@@ -147,6 +149,7 @@ class Intents:
                 object_name=name,
                 hand=SIDES[hand],
                 probability=float(touched[k]),
+                soon_probability=float(soon[k]),
                 action=action,
                 action_probability=None if action is None else float(touched[k]) * confidence,
                 contact_s=contact_s,
@@ -154,15 +157,28 @@ class Intents:
                 place_m=touched_place(seen.hands_m[hand], seen.objects_m[k]).tolist(),
             )
 
+    def _foreseen(self, person: Person, stamp_ns: int) -> tuple[Approach, Foreseen] | None:
+        """Return how the hands approach the objects, and the contacts foreseen; None where no object is known."""
+        seen = approach(person.arms, self._objects, stamp_ns) if self._objects else None
+        begun = person.beginnings.with_moved(stamp_ns, [] if seen is None else seen.moved)
+        return None if seen is None else (seen, self._network.foresee(seen.features, begun))
 
-def touched_next(probability: Array) -> Array:
-    """Return the probability that each of n objects is touched next by either hand, (n,), of that of each hand (2, n).
 
-    The hands are independent, 1 - (1 - p)(1 - q), and all objects together are scaled to sum to 1 at most: what both
-    are about to touch at once, either may touch next.
+def touched_soon(probability: Array) -> Array:
+    """Return the probability that each of n objects is touched by either hand, (n,), of that of each hand (2, n).
+
+    The hands are independent: 1 - (1 - p)(1 - q).
     """
-    by_either = 1 - np.prod(1 - probability, axis=0)
-    touched: Array = by_either / max(float(by_either.sum()), 1.0)
+    by_either: Array = 1 - np.prod(1 - probability, axis=0)
+    return by_either
+
+
+def touched_next(soon: Array) -> Array:
+    """Return the probability that each of n objects is touched first, (n,), of that of being touched at all (n,).
+
+    They are scaled to sum to 1 at most: of two objects that both hands are about to touch, either may be next.
+    """
+    touched: Array = soon / max(float(soon.sum()), 1.0)
     return touched
 
 

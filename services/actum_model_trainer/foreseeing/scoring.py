@@ -36,7 +36,8 @@ class Said:
     """What was said in a take.
 
     Attributes:
-        scores: (T, n), of each object at each of the T stamps: the higher, the likelier it is touched.
+        scores: (T, n), of each object at each of the T stamps: the higher, the likelier it is touched. Probabilities of
+            objects that different hands are about to touch sum to more than 1.
         contact_s: (T, n), the time until its contact (s); None where no times are said.
     """
 
@@ -56,19 +57,14 @@ class Said:
         return sorted(self.take.objects_m)
 
     def announcements(self, threshold: float) -> Iterator["Announcement"]:
-        """Yield when an object is announced; one that goes on for longer than the horizon is announced anew."""
-        likeliest = self.scores.argmax(axis=1)
-        current, last_s = None, -np.inf
-        for row in np.flatnonzero(self.scores.max(axis=1) >= threshold).tolist():
-            at_s, number = float(self.stamps_s[row]), self.numbers[likeliest[row]]
-            if current and current.number == number and at_s <= min(last_s + BREAK_S, current.first_s + HORIZON_S):
+        """Yield when each object is announced; one that goes on for longer than the horizon is announced anew."""
+        for number, scores in zip(self.numbers, self.scores.T, strict=True):
+            first_s = last_s = -np.inf
+            for at_s in self.stamps_s[scores >= threshold].tolist():
+                if at_s > min(last_s + BREAK_S, first_s + HORIZON_S):
+                    first_s = at_s
+                    yield Announcement(number, first_s)
                 last_s = at_s
-                continue
-            if current:
-                yield current
-            current, last_s = Announcement(number, at_s), at_s
-        if current:
-            yield current
 
 
 class Announcement(NamedTuple):
@@ -130,7 +126,7 @@ class Before(NamedTuple):
 
     Attributes:
         right: share of contacts whose likeliest object is the right one.
-        brier: mean Brier score over the objects and none of them.
+        brier: mean Brier score over the objects, each touched within the horizon or not, and none of them.
         time_error_s: median error of the time to contact (s); NaN where no times are said.
     """
 
@@ -143,15 +139,16 @@ def before(said: Sequence[Said], seconds: float) -> Before:
     """Look at what was said so long before each contact (s)."""
     right, brier, errors_s = [], [], []
     for each in said:
+        coming = touched_soon(each)
         for contact in each.take.contacts:
             at_s = contact.stamp_ns / SECOND_NS - seconds
             row = int(np.searchsorted(each.stamps_s, at_s, side="right")) - 1
             if row < 0:
                 continue
             truth = np.array(each.numbers) == contact.number
-            scores = each.scores[row]
+            scores, soon = each.scores[row], coming[row]
             right.append(bool(truth[scores.argmax()]) and np.isfinite(scores.max()))
-            brier.append(float(((scores - truth) ** 2).sum() + max(1 - scores.sum(), 0.0) ** 2))
+            brier.append(float(((scores - soon) ** 2).sum() + max(1 - scores.sum(), 0.0) ** 2))
             if each.contact_s is not None:
                 left_s = contact.stamp_ns / SECOND_NS - each.stamps_s[row]
                 errors_s.append(abs(float(each.contact_s[row][truth][0]) - left_s))
@@ -183,11 +180,11 @@ class Scores(NamedTuple):
 
 
 def calibration_error(said: Sequence[Said]) -> float:
-    """Return the expected calibration error of the likeliest object's probability that it is touched next in time."""
+    """Return the expected calibration error of the likeliest object's probability of a touch within the horizon."""
     told, true = [], []
     for each in said:
         told.append(each.scores.max(axis=1))
-        true.append(touched_next(each)[np.arange(len(each.scores)), each.scores.argmax(axis=1)])
+        true.append(touched_soon(each)[np.arange(len(each.scores)), each.scores.argmax(axis=1)])
     probability, came = np.concatenate(told), np.concatenate(true)
     counted = probability > BACKGROUND
     probability, came = probability[counted], came[counted]
@@ -196,7 +193,7 @@ def calibration_error(said: Sequence[Said]) -> float:
     return float(sum(gaps))
 
 
-def touched_next(said: Said) -> Array:
+def touched_soon(said: Said) -> Array:
     """Tell for each instant and object whether it is touched within the horizon, (T, n)."""
     coming = np.zeros(said.scores.shape, bool)
     for contact in said.take.contacts:

@@ -32,6 +32,9 @@ class Intended(Model):
     """The hand that is on its way to the object; if both are, the likelier one."""
     probability: FiniteFloat
     """The probability that the person touches this object next, within 1.5 s, 0 to 1."""
+    soon_probability: FiniteFloat
+    """The probability that the person touches this object within 1.5 s, next or after another one, 0 to 1. It is
+    greater than `probability` while the hands reach for different objects: only one can be next, both are touched."""
     action: Name | None = None
     """The likeliest ongoing action; null if none is known, or if the action is marked for the other hand."""
     action_probability: FiniteFloat | None = None
@@ -52,7 +55,7 @@ class Intent(Message):
     agent: AgentId
     """The number of the person who is about to touch something."""
     intended: Annotated[list[Intended], Field(max_length=MOST_OBJECTS)]
-    """The possible contacts, the likeliest first. The probabilities sum to 1 at most; the rest is the probability that
+    """The possible contacts, the likeliest first. Their `probability` sums to 1 at most; the rest is the probability that
     none of these contacts happens. When the reach is over, one message has an empty list, and none follows until the
     next reach."""
     completeness: FiniteFloat | None = None

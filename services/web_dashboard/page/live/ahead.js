@@ -37,9 +37,9 @@ class Ahead {
     for (const [agent, { at }] of this.newest) if (performance.now() - at > SILENT_MS) this.newest.delete(agent);
     const { intent } = [...this.newest.values()].find(({ intent: { agent } }) => isShown(agent)) ?? {};
     const told = intent && nameOf(intent) !== this.done.get(intent.agent);
-    const likeliest = told ? intent.intended.find(({ probability }) => probability >= LEAST) : undefined;
+    const likeliest = told ? intent.intended.find(({ soon_probability: soon }) => soon >= LEAST) : undefined;
     this.line.classList.toggle("idle", !likeliest);
-    this.line.classList.toggle("certain", (likeliest?.probability ?? 0) >= CERTAIN);
+    this.line.classList.toggle("certain", (likeliest?.soon_probability ?? 0) >= CERTAIN);
     if (likeliest) this.line.textContent = `→ ${likeliest.object_name}, ${when(likeliest.contact_s)}`;
   }
 }
