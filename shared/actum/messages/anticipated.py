@@ -55,9 +55,9 @@ class Intent(Message):
     agent: AgentId
     """The number of the person who is about to touch something."""
     intended: Annotated[list[Intended], Field(max_length=MOST_OBJECTS)]
-    """The possible contacts, the likeliest first. Their `probability` sums to 1 at most; the rest is the probability that
-    none of these contacts happens. When the reach is over, one message has an empty list, and none follows until the
-    next reach."""
+    """The possible contacts, the likeliest first. Their `probability` sums to 1 at most; the rest is the probability
+    that none of these contacts happens. When the reach is over, one message has an empty list, and none follows until
+    the next reach."""
     completeness: FiniteFloat | None = None
     """The fraction of the ongoing action that has been done, 0 to 1; null if no ongoing action is known."""
     segment_id: SegmentId | None = None
