@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from actum.arrays import Array
 from actum.geometry import angle_between_rad
 from marker_tracker.pose.poses import Pose
@@ -44,7 +42,7 @@ class PoseDisambiguation:
 
     def _likelier(self, near: Pose, far: Pose) -> Pose:
         ratio = 4 * (far.error_px**2 - near.error_px**2) / (2 * CORNER_NOISE_PX**2)
-        self._evidence = min(MAX_EVIDENCE, DECAY * self._evidence + float(np.clip(ratio, -MAX_STEP, MAX_STEP)))
+        self._evidence = min(MAX_EVIDENCE, DECAY * self._evidence + min(max(ratio, -MAX_STEP), MAX_STEP))
         if self._evidence >= -SWITCH_EVIDENCE:
             return near
         self._evidence = min(MAX_EVIDENCE, -self._evidence)
