@@ -4,10 +4,12 @@ import hashlib
 import struct
 from dataclasses import dataclass
 from functools import partial
+from typing import Literal
 
 from actum.bridge import ForeignNode, ForeignTopic
 from ros2_bridge import message_types as types
-from ros2_bridge.settings import Settings, TopicName
+from ros2_bridge.hri import types as hri
+from ros2_bridge.settings import BODIES, Settings, TopicName
 
 NODE = "bridge"
 """The name of the bridge's node, in the namespace of its topics."""
@@ -19,12 +21,13 @@ NO_HASH = "TypeHashNotSupported"
 class RosTopic:
     """One row of the table: a topic's name below the namespace, or from the root, its type, and its quality of service.
 
-    All are reliable and keep the last `depth`. `chosen_by` is the setting's word for it; latched is transient local.
+    All are reliable and keep the last `depth`. `chosen_by` is the setting's word for it; latched is transient local. In
+    the name of a topic that each body has, `*` stands for the body's id.
     """
 
     name: str
     type: str
-    chosen_by: TopicName
+    chosen_by: TopicName | Literal["bodies"]
     depth: int = 10
     latched: bool = False
 
@@ -37,14 +40,19 @@ EVENT = RosTopic("event", types.ACTION_EVENT, "event", depth=1, latched=True)
 EVENT_JSON = RosTopic("event_json", types.STRING, "event_json", depth=1, latched=True)
 INTENT = RosTopic("intent", types.ACTION_INTENT, "intent")
 MARK = RosTopic("mark", types.STRING, "mark")
+BODIES_TRACKED = RosTopic("/humans/bodies/tracked", hri.IDS_LIST, BODIES)
+BODIES_TF = RosTopic("/tf", types.TF_MESSAGE, BODIES, depth=100)
+BODIES_TF_STATIC = RosTopic("/tf_static", types.TF_MESSAGE, BODIES, latched=True)
+BODIES_JOINT_STATES = RosTopic("/humans/bodies/*/joint_states", hri.JOINT_STATE, BODIES)
+BODIES_SKELETON_2D = RosTopic("/humans/bodies/*/skeleton2d", hri.SKELETON_2D, BODIES)
 
 PUBLISHED = (SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON, INTENT)
-SUBSCRIBED = (MARK,)
+SUBSCRIBED = (MARK, BODIES_TRACKED, BODIES_TF, BODIES_TF_STATIC, BODIES_JOINT_STATES, BODIES_SKELETON_2D)
 
 
 def node(settings: Settings, session_id: str) -> ForeignNode:
     """Return what the bridge declares in a Zenoh session: a node with the chosen topics."""
-    chosen = settings.ros_topics
+    chosen = settings.chosen_topics
     own = f"@ros2_lv/{settings.ros_domain_id}/{session_id}/0"
     names = f"%/{_mangled(settings.namespace)}/{NODE}"
     publishes = [
@@ -71,7 +79,7 @@ def _declared(topic: RosTopic, settings: Settings, entity: str) -> ForeignTopic:
     return ForeignTopic(
         name=topic.name,
         key=f"{settings.ros_domain_id}/{path}/{typed}",
-        token=token,
+        token=None if "*" in path else token,  # a token names one topic
         latched=topic.latched,
         attachment=partial(attachment, gid),
     )
