@@ -70,17 +70,17 @@ def frames(stamp_ns: int, joints: Array, body_id: str, names: Mapping[str, str] 
 
 def tf(*transforms: Transform) -> Foreign:
     payload = written(types.TF_MESSAGE, {"transforms": list(transforms)})
-    return Foreign(topics.BODIES_TF.name, payload, "0/tf/type/hash")
+    return Foreign(topics.OTHERS_TF.name, payload, "0/tf/type/hash")
 
 
 def tf_static(*transforms: Transform) -> Foreign:
     payload = written(types.TF_MESSAGE, {"transforms": list(transforms)})
-    return Foreign(topics.BODIES_TF_STATIC.name, payload, "0/tf_static/type/hash")
+    return Foreign(topics.OTHERS_TF_STATIC.name, payload, "0/tf_static/type/hash")
 
 
 def tracked(stamp_ns: int, *ids: str) -> Foreign:
     payload = written(hri.IDS_LIST, {"header": header(stamp_ns), "ids": list(ids)})
-    return Foreign(topics.BODIES_TRACKED.name, payload, "0/humans/bodies/tracked/type/hash")
+    return Foreign(topics.OTHERS_TRACKED.name, payload, "0/humans/bodies/tracked/type/hash")
 
 
 def joint_states(stamp_ns: int, body_id: str, angles_rad: Mapping[str, float]) -> Foreign:
@@ -92,13 +92,13 @@ def joint_states(stamp_ns: int, body_id: str, angles_rad: Mapping[str, float]) -
         "effort": [],
     }
     key = f"0/humans/bodies/{body_id}/joint_states/type/hash"
-    return Foreign(topics.BODIES_JOINT_STATES.name, written(hri.JOINT_STATE, fields), key)
+    return Foreign(topics.OTHERS_JOINT_STATES.name, written(hri.JOINT_STATE, fields), key)
 
 
 def skeleton_2d(stamp_ns: int, body_id: str) -> Foreign:
     point = {"x": 0.5, "y": 0.5, "c": 0.9}
     payload = written(hri.SKELETON_2D, {"header": header(stamp_ns), "skeleton": [point] * 18})
-    return Foreign(topics.BODIES_SKELETON_2D.name, payload, f"0/humans/bodies/{body_id}/skeleton2d/type/hash")
+    return Foreign(topics.OTHERS_SKELETON_2D.name, payload, f"0/humans/bodies/{body_id}/skeleton2d/type/hash")
 
 
 def one_frame(stamp_ns: int, people: Mapping[str, Array]) -> Iterable[Foreign]:

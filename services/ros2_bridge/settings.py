@@ -10,8 +10,8 @@ from actum.settings import ServiceSettings
 
 TopicName = Literal["skeletons", "tf", "objects", "event", "event_json", "intent", "mark"]
 """What can be published and, of `mark`, subscribed to."""
-BODIES: Literal["bodies"] = "bodies"
-"""The word for the topics from which other nodes' bodies are read, which `ros_bodies` chooses."""
+OTHERS: Literal["others"] = "others"
+"""The word for the topics on which other nodes describe bodies, which `ros_bodies` chooses."""
 ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 """The characters of ROS 2's names, without the slash before them."""
 HIGHEST_DOMAIN = 232
@@ -86,7 +86,7 @@ class Settings(ServiceSettings):
     @property
     def chosen_topics(self) -> frozenset[str]:
         """The words for the topics to exchange with ROS 2."""
-        return self.ros_topics | {BODIES} if self.ros_bodies else self.ros_topics
+        return self.ros_topics | {OTHERS} if self.ros_bodies else self.ros_topics
 
     @property
     def namespace(self) -> str:

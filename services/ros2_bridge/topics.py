@@ -9,7 +9,7 @@ from typing import Literal
 from actum.bridge import ForeignNode, ForeignTopic
 from ros2_bridge import message_types as types
 from ros2_bridge.hri import types as hri
-from ros2_bridge.settings import BODIES, Settings, TopicName
+from ros2_bridge.settings import OTHERS, Settings, TopicName
 
 NODE = "bridge"
 """The name of the bridge's node, in the namespace of its topics."""
@@ -27,7 +27,7 @@ class RosTopic:
 
     name: str
     type: str
-    chosen_by: TopicName | Literal["bodies"]
+    chosen_by: TopicName | Literal["others"]
     depth: int = 10
     latched: bool = False
 
@@ -40,14 +40,14 @@ EVENT = RosTopic("event", types.ACTION_EVENT, "event", depth=1, latched=True)
 EVENT_JSON = RosTopic("event_json", types.STRING, "event_json", depth=1, latched=True)
 INTENT = RosTopic("intent", types.ACTION_INTENT, "intent")
 MARK = RosTopic("mark", types.STRING, "mark")
-BODIES_TRACKED = RosTopic("/humans/bodies/tracked", hri.IDS_LIST, BODIES)
-BODIES_TF = RosTopic("/tf", types.TF_MESSAGE, BODIES, depth=100)
-BODIES_TF_STATIC = RosTopic("/tf_static", types.TF_MESSAGE, BODIES, latched=True)
-BODIES_JOINT_STATES = RosTopic("/humans/bodies/*/joint_states", hri.JOINT_STATE, BODIES)
-BODIES_SKELETON_2D = RosTopic("/humans/bodies/*/skeleton2d", hri.SKELETON_2D, BODIES)
+OTHERS_TRACKED = RosTopic("/humans/bodies/tracked", hri.IDS_LIST, OTHERS)
+OTHERS_TF = RosTopic("/tf", types.TF_MESSAGE, OTHERS, depth=100)
+OTHERS_TF_STATIC = RosTopic("/tf_static", types.TF_MESSAGE, OTHERS, latched=True)
+OTHERS_JOINT_STATES = RosTopic("/humans/bodies/*/joint_states", hri.JOINT_STATE, OTHERS)
+OTHERS_SKELETON_2D = RosTopic("/humans/bodies/*/skeleton2d", hri.SKELETON_2D, OTHERS)
 
 PUBLISHED = (SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON, INTENT)
-SUBSCRIBED = (MARK, BODIES_TRACKED, BODIES_TF, BODIES_TF_STATIC, BODIES_JOINT_STATES, BODIES_SKELETON_2D)
+SUBSCRIBED = (MARK, OTHERS_TRACKED, OTHERS_TF, OTHERS_TF_STATIC, OTHERS_JOINT_STATES, OTHERS_SKELETON_2D)
 
 
 def node(settings: Settings, session_id: str) -> ForeignNode:

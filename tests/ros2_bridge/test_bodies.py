@@ -306,9 +306,9 @@ def test_one_stamp_of_the_future_does_not_end_the_stream() -> None:
 @pytest.mark.parametrize(
     ("payload", "kind"),
     [
-        (Foreign(topics.BODIES_TF.name, b"\x00\x01garbage", ""), "bad_body_message"),
-        (Foreign(topics.BODIES_TRACKED.name, b"", ""), "bad_body_message"),
-        (Foreign(topics.BODIES_TF.name, b"\x00\x01\x00\x00" + bytes(300_000), ""), "bad_body_message"),
+        (Foreign(topics.OTHERS_TF.name, b"\x00\x01garbage", ""), "bad_body_message"),
+        (Foreign(topics.OTHERS_TRACKED.name, b"", ""), "bad_body_message"),
+        (Foreign(topics.OTHERS_TF.name, b"\x00\x01\x00\x00" + bytes(300_000), ""), "bad_body_message"),
         (tf(transform(FIRST_NS, "head_ab", (math.nan, 0, 0))), "bad_transform"),
         (tf(transform(FIRST_NS, "head_ab", (0, 0, 0), (0, 0, 0, 0))), "bad_transform"),
         (tf(transform(0, "head_ab", (0, 0, 0))), "bad_body_stamp"),

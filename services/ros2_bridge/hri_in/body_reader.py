@@ -48,11 +48,11 @@ class BodyReader:
         self._reviewed_ns: int | None = None
         counters.details["source"] = f"ROS 2, bodies of ROS4HRI in the frame {optical_frame}"
         self._readers: dict[RosTopic, Callable[[Any, Foreign], Iterable[Skeleton]]] = {
-            topics.BODIES_TRACKED: self._ids,
-            topics.BODIES_TF: self._transforms,
-            topics.BODIES_TF_STATIC: self._fixed_transforms,
-            topics.BODIES_JOINT_STATES: self._joint_states,
-            topics.BODIES_SKELETON_2D: self._points,
+            topics.OTHERS_TRACKED: self._ids,
+            topics.OTHERS_TF: self._transforms,
+            topics.OTHERS_TF_STATIC: self._fixed_transforms,
+            topics.OTHERS_JOINT_STATES: self._joint_states,
+            topics.OTHERS_SKELETON_2D: self._points,
         }
         self._by_name = {topic.name: topic for topic in self._readers}
 
