@@ -36,7 +36,7 @@ def test_types_have_the_hashes_by_which_ros_knows_them() -> None:
 
 
 OWN_HASHES = {
-    "actum_msgs/msg/ActionEvent": "RIHS01_bca8cd7bdc88f3ddf620f9504d7d3bf9c418dde90fbe9ac81089fb2ffe8211a1",
+    "actum_msgs/msg/ActionEvent": "RIHS01_c3fbee04ffc704da5b7ecee8715de35d81c93a6f4d58050ee155d281041f0b79",
     "actum_msgs/msg/ActionIntent": "RIHS01_bea2105f464a869011676c1e27e0aec06d15aa833de0487f00ef82e618f1d01c",
     "actum_msgs/msg/IntendedContact": "RIHS01_d0a7dcef45a32c2dac299e2b64ec6d64ea13b41dbcb78cb06f5012958eb4d5ea",
 }
