@@ -223,6 +223,11 @@ OF_FUSION_AND_BRIDGE: Mapping[str, Problem] = {
 }
 
 OF_BRIDGE: Mapping[str, Problem] = {
+    "unusable_camera": Problem(
+        "An image's focal lengths are not positive, or its `skeleton_from_image` is not rigid. People's places in the "
+        "image are those of the camera before.",
+        "Calibrate the camera with [`actum calibrate`](cameras.md), or correct the program that publishes images.",
+    ),
     "bad_mark": Problem(
         "A message on the ROS 2 topic `mark` is not a mark; the latest error says why.",
         "Publish a `std_msgs/msg/String` with [this JSON](ros2.md#marks).",

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from actum import keys
 from actum.keys import BASE, Topic
 from actum_deployer.deployment import Deployment
-from actum_deployer.roles import IMAGES, ROS_BODIES, ROS_MARKS, ROS_TOPICS, Role, identity, router_identity
+from actum_deployer.roles import IMAGES, ROS_MARKS, ROS_TOPICS, Role, identity, router_identity
 
 Rule = dict[str, Any]
 """One rule of Zenoh's access control."""
@@ -89,7 +89,7 @@ def rules(role: Role, sensors: str, ros_domain: int | None) -> Iterator[Rule]:
 def link_rules(images_cross: bool, ros_domain: int | None) -> list[Rule]:
     """Return the rules between routers: what any role may put, but images only where these may cross."""
     crossing = [topic for topic in keys.TOPICS if images_cross or topic not in IMAGES]
-    ros = list(dict.fromkeys(_ros((*ROS_TOPICS, *ROS_MARKS, *ROS_BODIES), ["*"], ros_domain)))
+    ros = _ros((*ROS_TOPICS, *ROS_MARKS), ["*"], ros_domain)
     nodes = [] if ros_domain is None else [ROS_TOKENS.format(ros_domain)]
     content = [*_patterns(crossing, ["*"]), f"{BASE}/*/command/**", *ros]
     tokens = [*(f"{BASE}/*/{token.format('*')}" for token in TOKENS), *nodes]

@@ -52,14 +52,16 @@ class Role:
 
 ROS_TOPICS = (
     *(f"{BASE}/{{}}/{name}" for name in ("skeletons", "objects", "event", "event_json", "intent")),
-    "tf",
-    "tf_static",
+    *("tf", "tf_static", "intents", "humans"),
 )
-"""What the bridge publishes on ROS 2's keys, below a domain, in the namespace that it has unless it is told another."""
+"""What the bridge publishes on ROS 2's keys, below a domain, in the namespace that it has unless it is told another.
+
+`humans` stands for all topics of ROS4HRI below it, which come and go with the people.
+"""
 ROS_MARKS = (f"{BASE}/{{}}/mark",)
 """What it subscribes to."""
 ROS_BODIES = ("humans/bodies", "tf", "tf_static")
-"""What it also subscribes to where the bodies that ROS 2 nodes track become skeletons."""
+"""What it also subscribes to where the bodies that ROS 2 nodes track become skeletons; it publishes there, too."""
 GATEWAY = Role(
     "gateway",
     "a sensor's gateway, or the simulated scene",
@@ -120,7 +122,7 @@ BRIDGE = Role(
     "the bridge to ROS 2, which publishes marks for ROS 2 nodes",
     services=("ros2_bridge",),
     puts=(keys.SEGMENT,),
-    reads=(keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT),
+    reads=(keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT, keys.COLOR),
     ros_puts=ROS_TOPICS,
     ros_reads=ROS_MARKS,
 )

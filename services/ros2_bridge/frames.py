@@ -62,6 +62,11 @@ def transform(
         rotation: (3, 3), from the child's axes to those of the frame of the header; None where they are the same.
     """
     xyzw = (0, 0, 0, 1) if rotation is None else geometry.quaternion_xyzw(rotation)
+    return transform_xyzw(of, child, position_m, xyzw)
+
+
+def transform_xyzw(of: Any, child: str, position_m: Sequence[float] | Array, xyzw: Sequence[float]) -> Any:
+    """Return the same, turned by a unit quaternion."""
     placed = made("geometry_msgs/msg/Transform", translation=vector(position_m), rotation=quaternion(xyzw))
     return made("geometry_msgs/msg/TransformStamped", header=of, child_frame_id=child, transform=placed)
 

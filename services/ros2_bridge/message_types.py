@@ -19,8 +19,9 @@ DETECTION_3D_ARRAY = "vision_msgs/msg/Detection3DArray"
 ACTION_EVENT = "actum_msgs/msg/ActionEvent"
 ACTION_INTENT = "actum_msgs/msg/ActionIntent"
 INTENDED_CONTACT = "actum_msgs/msg/IntendedContact"
+PERSON_ACTION = "actum_msgs/msg/PersonAction"
 
-OWN = (ACTION_EVENT, INTENDED_CONTACT, ACTION_INTENT)
+OWN = (ACTION_EVENT, INTENDED_CONTACT, ACTION_INTENT, PERSON_ACTION)
 """Our own types, whose definitions are files of the package `actum_msgs`."""
 
 DEFINITIONS = {
@@ -57,7 +58,7 @@ def type_hash(name: str) -> str:
     return str(_store().hash_rihs01(name))
 
 
-def made(name: str, **fields: Any) -> Any:
+def made(name: str, /, **fields: Any) -> Any:
     """Make a message of the type; fields that are not given have ROS's default values."""
     return replace(_default(name), **fields)
 

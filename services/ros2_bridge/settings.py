@@ -1,6 +1,7 @@
 """Settings of the bridge to ROS 2."""
 
 import re
+from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import BeforeValidator, Field, field_validator, model_validator
@@ -8,8 +9,12 @@ from pydantic_settings import NoDecode
 
 from actum.settings import ServiceSettings
 
-TopicName = Literal["skeletons", "tf", "objects", "event", "event_json", "intent", "mark"]
-"""What can be published and, of `mark`, subscribed to."""
+TopicName = Literal[
+    "skeletons", "tf", "objects", "event", "event_json", "intent", "mark", "bodies", "body_links", "persons", "intents"
+]
+"""What can be published and, of `mark`, subscribed to. The last four are ROS4HRI's."""
+OF_BODIES: frozenset[TopicName] = frozenset(("bodies", "body_links", "persons"))
+"""The words for topics on which the bridge describes bodies."""
 OTHERS: Literal["others"] = "others"
 """The word for the topics on which other nodes describe bodies, which `ros_bodies` chooses."""
 ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
@@ -41,6 +46,12 @@ class Settings(ServiceSettings):
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(get_args(TopicName)),
         description="the topics to exchange with ROS 2, separated by commas, such as event,mark",
+    )
+    ros_hri_mapping: Path | None = Field(
+        None,
+        description=(
+            "a YAML file that says which actions are gestures and intents in the words of ROS4HRI; default: none are"
+        ),
     )
     ros_frame_id: str | None = Field(
         None,
@@ -85,8 +96,8 @@ class Settings(ServiceSettings):
 
     @property
     def chosen_topics(self) -> frozenset[str]:
-        """The words for the topics to exchange with ROS 2."""
-        return self.ros_topics | {OTHERS} if self.ros_bodies else self.ros_topics
+        """The words for the topics to exchange with ROS 2: whoever reads others' bodies does not publish them again."""
+        return self.ros_topics - OF_BODIES | {OTHERS} if self.ros_bodies else self.ros_topics
 
     @property
     def namespace(self) -> str:

@@ -45,27 +45,42 @@ OTHERS_TF = RosTopic("/tf", types.TF_MESSAGE, OTHERS, depth=100)
 OTHERS_TF_STATIC = RosTopic("/tf_static", types.TF_MESSAGE, OTHERS, latched=True)
 OTHERS_JOINT_STATES = RosTopic("/humans/bodies/*/joint_states", hri.JOINT_STATE, OTHERS)
 OTHERS_SKELETON_2D = RosTopic("/humans/bodies/*/skeleton2d", hri.SKELETON_2D, OTHERS)
+BODIES_TRACKED = RosTopic("/humans/bodies/tracked", hri.IDS_LIST, "bodies")
+PERSONS_TRACKED = RosTopic("/humans/persons/tracked", hri.IDS_LIST, "persons")
+CANDIDATE_MATCHES = RosTopic("/humans/candidate_matches", hri.IDS_MATCH, "persons")
+INTENTS = RosTopic("/intents", hri.INTENT, "intents")
 
-PUBLISHED = (SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON, INTENT)
+PUBLISHED = (
+    *(SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON, INTENT),
+    *(BODIES_TRACKED, PERSONS_TRACKED, CANDIDATE_MATCHES, INTENTS),
+)
+"""Published as long as the bridge runs; the topics of one body or person, `ros2_bridge.hri.present`, come and go."""
 SUBSCRIBED = (MARK, OTHERS_TRACKED, OTHERS_TF, OTHERS_TF_STATIC, OTHERS_JOINT_STATES, OTHERS_SKELETON_2D)
 
 
 def node(settings: Settings, session_id: str) -> ForeignNode:
     """Return what the bridge declares in a Zenoh session: a node with the chosen topics."""
-    chosen = settings.chosen_topics
-    own = f"@ros2_lv/{settings.ros_domain_id}/{session_id}/0"
-    names = f"%/{_mangled(settings.namespace)}/{NODE}"
-    publishes = [
-        _declared(topic, settings, f"{own}/{number}/MP/{names}")
-        for number, topic in enumerate(PUBLISHED, 1)
-        if topic.chosen_by in chosen
-    ]
-    subscribes = [
-        _declared(topic, settings, f"{own}/{number}/MS/{names}")
-        for number, topic in enumerate(SUBSCRIBED, 1 + len(PUBLISHED))
-        if topic.chosen_by in chosen
-    ]
-    return ForeignNode(f"{own}/0/NN/{names}", tuple(publishes), tuple(subscribes))
+    numbered = enumerate((*PUBLISHED, *SUBSCRIBED), 1)
+    chosen = [(number, topic) for number, topic in numbered if topic.chosen_by in settings.chosen_topics]
+    return ForeignNode(
+        _entity(settings, session_id, 0, "NN"),
+        tuple(published(topic, settings, session_id, number) for number, topic in chosen if topic in PUBLISHED),
+        tuple(
+            _declared(topic, settings, _entity(settings, session_id, number, "MS"))
+            for number, topic in chosen
+            if topic in SUBSCRIBED
+        ),
+    )
+
+
+def published(topic: RosTopic, settings: Settings, session_id: str, number: int) -> ForeignTopic:
+    """Return a topic as the bridge publishes it; `number` is no other's of the session."""
+    return _declared(topic, settings, _entity(settings, session_id, number, "MP"))
+
+
+def _entity(settings: Settings, session_id: str, number: int, kind: str) -> str:
+    """Return the beginning of the token of the node (NN), a publisher (MP) or a subscriber (MS)."""
+    return f"@ros2_lv/{settings.ros_domain_id}/{session_id}/0/{number}/{kind}/%/{_mangled(settings.namespace)}/{NODE}"
 
 
 def _declared(topic: RosTopic, settings: Settings, entity: str) -> ForeignTopic:
@@ -79,7 +94,7 @@ def _declared(topic: RosTopic, settings: Settings, entity: str) -> ForeignTopic:
     return ForeignTopic(
         name=topic.name,
         key=f"{settings.ros_domain_id}/{path}/{typed}",
-        token=None if "*" in path else token,  # a token names one topic
+        token="" if "*" in path else token,  # a token names one topic
         latched=topic.latched,
         attachment=partial(attachment, gid),
     )

@@ -81,7 +81,10 @@ def test_a_service_may_put_what_its_node_puts(case: Case) -> None:
 def test_only_gateways_put_what_is_seen_and_images_go_to_whom_they_concern() -> None:
     assert {role.name for role in ROLES if {*IMAGES} & {*role.puts}} == {"gateway"}
     assert {role.name for role in ROLES if keys.SKELETON in role.puts} == {"gateway", "ros2_bodies"}
-    assert {role.name for role in ROLES if {*IMAGES} & {*role.reads}} == {"tracker", "page", "recorder"}
+    assert {role.name for role in ROLES if {*IMAGES} & {*role.reads}} == {
+        *("tracker", "page", "recorder"),
+        *("ros2", "ros2_bodies"),  # take the camera from them, to say where people are in the image
+    }
 
 
 def test_who_marks_is_who_may_switch_and_the_classifier_that_finds() -> None:
@@ -186,6 +189,12 @@ def test_the_bridge_to_ros_may_put_and_read_what_its_table_says_and_a_robot_the_
                 assert any(zenoh.KeyExpr(each).includes(key) for each in allowed(role, flow, "put", 7))
                 assert not any(zenoh.KeyExpr(each).intersects(key) for each in allowed(role, other, "put", 7))
                 assert not any(zenoh.KeyExpr(each).intersects(key) for each in allowed(role, flow, "put", 0))
+    body, person, intents = (
+        zenoh.KeyExpr(f"7/{it}/type/hash") for it in ("humans/bodies/a/roi", "humans/persons/a/action", "intents")
+    )
+    for role, flow in ((BRIDGE, "ingress"), (ROBOT, "egress")):
+        for key in (body, person, intents):
+            assert any(zenoh.KeyExpr(each).includes(key) for each in allowed(role, flow, "put", 7))
     for token in (node.token, *(topic.token for topic in (*node.publishes, *node.subscribes))):
         key = zenoh.KeyExpr(token)
         assert any(zenoh.KeyExpr(each).includes(key) for each in allowed(BRIDGE, "ingress", "liveliness_token", 7))

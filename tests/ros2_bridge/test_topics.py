@@ -39,6 +39,7 @@ OWN_HASHES = {
     "actum_msgs/msg/ActionEvent": "RIHS01_c3fbee04ffc704da5b7ecee8715de35d81c93a6f4d58050ee155d281041f0b79",
     "actum_msgs/msg/ActionIntent": "RIHS01_bea2105f464a869011676c1e27e0aec06d15aa833de0487f00ef82e618f1d01c",
     "actum_msgs/msg/IntendedContact": "RIHS01_d0a7dcef45a32c2dac299e2b64ec6d64ea13b41dbcb78cb06f5012958eb4d5ea",
+    "actum_msgs/msg/PersonAction": "RIHS01_5b617083ac53fc605a8b45c54b6dc15db9e083cf6a1d0833810adac1b678d2c9",
 }
 
 
@@ -56,6 +57,7 @@ def test_topics_stand_in_the_sensors_namespace_and_transforms_at_the_root() -> N
     assert [topic.key.split("::")[0].rpartition("/")[0] for topic in declared.publishes] == [
         "0/actum/kinect0/skeletons", "0/tf", "0/tf_static", "0/actum/kinect0/objects", "0/actum/kinect0/event",
         "0/actum/kinect0/event_json", "0/actum/kinect0/intent",
+        "0/humans/bodies/tracked", "0/humans/persons/tracked", "0/humans/candidate_matches", "0/intents",
     ]  # fmt: skip
     assert [topic.key for topic in declared.subscribes] == [f"0/actum/kinect0/mark/{STRING}"]
 
@@ -66,7 +68,7 @@ def test_tokens_tell_of_the_node_its_topics_and_their_quality_of_service() -> No
     tokens = {topic.name: topic.token for topic in (*declared.publishes, *declared.subscribes)}
     entity = "%/%actum%kinect0/bridge"
     assert tokens["event_json"] == f"@ros2_lv/0/5e55/0/6/MP/{entity}/%actum%kinect0%event_json/{STRING}/:1:,1:,:,:,,"
-    assert tokens["mark"] == f"@ros2_lv/0/5e55/0/8/MS/{entity}/%actum%kinect0%mark/{STRING}/::,10:,:,:,,"
+    assert tokens["mark"] == f"@ros2_lv/0/5e55/0/12/MS/{entity}/%actum%kinect0%mark/{STRING}/::,10:,:,:,,"
     assert tokens["/tf"].endswith(f"/MP/{entity}/%tf/tf2_msgs::msg::dds_::TFMessage_/{HASHES[PUBLISHED[1].type]}/::,100:,:,:,,")  # fmt: skip # noqa: E501
     assert len({token.split("/")[4] for token in tokens.values()}) == len(tokens), "each has a number of its own"
 

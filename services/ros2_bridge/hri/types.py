@@ -14,6 +14,7 @@ GESTURE = "hri_msgs/msg/Gesture"
 INTENT = "hri_actions_msgs/msg/Intent"
 JOINT_STATE = "sensor_msgs/msg/JointState"
 BOOL = "std_msgs/msg/Bool"
+FLOAT = "std_msgs/msg/Float32"
 
 DEFINITIONS = {
     IDS_LIST: "std_msgs/Header header\nstring[] ids",

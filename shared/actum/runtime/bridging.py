@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import zenoh
 from zenoh import ext, handlers
 
-from actum.bridge import Bridge, Foreign, ForeignTopic
+from actum.bridge import Bridge, Foreign, ForeignTopic, Withdrawn
 from actum.messages import Message
 from actum.node import Tick
 from actum.runtime.inbox import ENDING_S, Subscriber
@@ -32,11 +32,14 @@ class BridgeService(StepService):
     def __init__(self, bridge: Bridge, settings: ServiceSettings) -> None:
         super().__init__(bridge, settings)
         self._bridge = bridge
+        self._session: zenoh.Session | None = None
         self._publishers: dict[str, ForeignPublisher] = {}
 
     def _work(self, session: zenoh.Session, outbox: Outbox, stop: threading.Event, vacant_s: float) -> None:
         node = self._bridge.foreign_node(str(session.zid()))
+        token = session.liveliness().declare_token(node.token)  # it comes first, as the readers of tokens expect
         self._publishers = {topic.name: ForeignPublisher(session, topic) for topic in node.publishes}
+        self._session = session
         subscribers = [_subscribed(session, topic) for topic in node.subscribes]
         threads = [
             threading.Thread(target=self._read, args=(topic, subscriber, outbox, stop), daemon=True)
@@ -44,20 +47,26 @@ class BridgeService(StepService):
         ]
         for thread in threads:
             thread.start()
-        topic_tokens = [topic.token for topic in (*node.publishes, *node.subscribes) if topic.token is not None]
-        # the node's token comes first, as the readers of tokens expect
-        tokens = [session.liveliness().declare_token(token) for token in (node.token, *topic_tokens)]
+        topic_tokens = [topic.token for topic in node.subscribes if topic.token]
+        tokens = [token, *map(session.liveliness().declare_token, topic_tokens)]
         try:
             super()._work(session, outbox, stop, vacant_s)
         finally:
-            for declared in (*tokens, *subscribers):
+            for declared in (*tokens, *self._publishers.values(), *subscribers):
                 declared.undeclare()
             for thread in threads:
                 thread.join(timeout=ENDING_S)
 
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
-        for foreign in self._bridge.handle(message):
-            self._publishers[foreign.topic].put(foreign.payload)
+        for answer in self._bridge.handle(message):
+            match answer:
+                case Foreign():
+                    self._publishers[answer.topic].put(answer.payload)
+                case ForeignTopic():
+                    assert self._session is not None
+                    self._publishers[answer.name] = ForeignPublisher(self._session, answer)
+                case Withdrawn():
+                    self._publishers.pop(answer.topic).undeclare()
 
     def _read(self, topic: ForeignTopic, subscriber: Subscriber, outbox: Outbox, stop: threading.Event) -> None:
         """Hand on what comes on a foreign topic until the subscriber is undeclared."""
@@ -79,7 +88,10 @@ def _subscribed(session: zenoh.Session, topic: ForeignTopic) -> Subscriber:
 
 
 class ForeignPublisher:
-    """Puts payloads on a foreign topic, numbered from 1, each with the attachment that the other system wants."""
+    """Puts payloads on a foreign topic, numbered from 1, each with the attachment that the other system wants.
+
+    The topic's liveliness token is there as long as the publisher.
+    """
 
     def __init__(self, session: zenoh.Session, topic: ForeignTopic) -> None:
         self._topic = topic
@@ -95,8 +107,14 @@ class ForeignPublisher:
             )
         else:
             self._publisher = session.declare_publisher(topic.key, priority=zenoh.Priority.DATA_HIGH, express=True)
+        self._token = session.liveliness().declare_token(topic.token)
 
     def put(self, payload: bytes) -> None:
         """Put one payload."""
         self._count += 1
         self._publisher.put(payload, attachment=self._topic.attachment(self._count, time.time_ns()))
+
+    def undeclare(self) -> None:
+        """Publish no longer, and take back the token."""
+        self._token.undeclare()
+        self._publisher.undeclare()

@@ -1,0 +1,142 @@
+"""The camera that sees people, and where their joints are in its image: ROS4HRI's skeleton in 2-D, and region."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from actum import geometry
+from actum.arrays import Array
+from actum.messages import Image
+from actum.skeletons import INDEX
+from ros2_bridge.hri.types import POINT, REGION, SKELETON_2D
+from ros2_bridge.message_types import made
+
+KEYPOINTS = (
+    *("head", "neck"),
+    *(f"{side}_{joint}" for side in ("right", "left") for joint in ("shoulder", "elbow", "hand")),
+    *(f"{side}_{joint}" for side in ("right", "left") for joint in ("hip", "knee", "foot")),
+)
+"""Our joints in the order of Skeleton2D's first fourteen points. The head's middle stands for the nose, hands and feet
+for wrists and ankles; eyes and ears are not known."""
+_KEYPOINT_JOINTS = [INDEX[joint] for joint in KEYPOINTS]
+"""The index of each of these joints."""
+FACE_POINTS = 4
+"""How many points are left out after these: left eye, right eye, left ear, right ear."""
+MARGIN_M = 0.12
+"""How far a body reaches beyond its joints (m): half a head, or a hand beyond the wrist."""
+NEAREST_M = 0.1
+"""Joints nearer to the camera's plane than this (m) have no place in the image."""
+MOST_COEFFICIENTS = 12
+"""Of the lens's distortion those without a tilted sensor: radial (6), tangential (2), thin prism (4)."""
+
+
+MOST_PX = 1e6
+"""Largest focal length (px)."""
+FURTHEST_M = 100.0
+"""Most distance (m) of the camera from that of the skeletons, beyond which the transform between them is an error."""
+
+
+class UnusableCameraError(ValueError):
+    """An image whose camera shows nothing; the text says why."""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A camera of the skeletons' sensor.
+
+    Attributes:
+        matrix: (3, 3), px.
+        distortion: (12,), OpenCV's coefficients in the order k1 k2 p1 p2 k3 k4 k5 k6 s1 s2 s3 s4.
+        size_px: width and height.
+        image_from_skeleton: (4, 4), m.
+    """
+
+    matrix: Array
+    distortion: Array
+    size_px: tuple[int, int]
+    image_from_skeleton: Array
+
+    @classmethod
+    def of(cls, image: Image) -> Self:
+        """Return the camera of an image.
+
+        Raises:
+            UnusableCameraError: its focal lengths or its place cannot be.
+        """
+        skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
+        if not (0 < image.K[0] < MOST_PX and 0 < image.K[4] < MOST_PX):
+            raise UnusableCameraError(f"the camera matrix {image.K} has no usable focal lengths")
+        if not geometry.is_rigid(skeleton_from_image, FURTHEST_M):
+            raise UnusableCameraError(f"skeleton_from_image {image.skeleton_from_image} is no place of a camera")
+        given = np.array(image.distortion[:MOST_COEFFICIENTS], dtype=np.float64)
+        return cls(
+            np.array(image.K, dtype=np.float64).reshape(3, 3),
+            np.pad(given, (0, MOST_COEFFICIENTS - len(given))),
+            (image.width, image.height),
+            geometry.invert(skeleton_from_image),
+        )
+
+    def seen(self, joints: Array, confidence: Sequence[float]) -> "InImage":
+        """Return where joints (15, 3; m, NaN where unknown) are in the image."""
+        there = geometry.apply(self.image_from_skeleton, joints)
+        distance = np.where(there[:, 2] >= NEAREST_M, there[:, 2], np.nan)
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # coefficients may be absurd
+            plane = self._distorted(there[:, :2] / distance[:, None])
+            places = (plane @ self.matrix[:2, :2].T + self.matrix[:2, 2]) / self.size_px
+        inside = np.logical_and(places >= 0, places <= 1).all(axis=1, keepdims=True)
+        return InImage(np.where(inside, places, np.nan), distance, confidence, self)
+
+    def _distorted(self, plane: Array) -> Array:
+        """Return points of the plane at distance 1 (n, 2) as the lens shows them, by OpenCV's model."""
+        if not self.distortion.any():
+            return plane
+        k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = self.distortion
+        x, y = plane.T
+        r2 = x * x + y * y
+        radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+        across = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x) + r2 * (s1 + r2 * s2)
+        down = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y + r2 * (s3 + r2 * s4)
+        return np.stack([across, down], axis=1)
+
+
+@dataclass(frozen=True)
+class InImage:
+    """One person's joints in an image.
+
+    Attributes:
+        places: (15, 2), 0 to 1 of the image's width and height; NaN where unknown, behind the camera, or outside.
+        distances_m: (15,), from the camera's plane.
+        confidence: (15,), of the source.
+        camera: the camera.
+    """
+
+    places: Array
+    distances_m: Array
+    confidence: Sequence[float]
+    camera: Camera
+
+    def skeleton_2d(self, header: Any) -> Any:
+        """Return a Skeleton2D; the confidence of a point that is not known is 0."""
+        places, confidence = self.places.tolist(), self.confidence
+        points = [_point(places[i], confidence[i]) for i in _KEYPOINT_JOINTS]
+        return made(SKELETON_2D, header=header, skeleton=points + [made(POINT)] * FACE_POINTS)
+
+    def region(self, header: Any) -> Any | None:
+        """Return the region around the joints with what a body reaches beyond them; None where no joint is seen."""
+        known = ~np.isnan(self.places[:, 0])
+        if not known.any():
+            return None
+        focal = np.diag(self.camera.matrix)[:2] / self.camera.size_px
+        margin = MARGIN_M * focal / self.distances_m[known, None]
+        xmin, ymin = np.clip((self.places[known] - margin).min(axis=0), 0, 1).tolist()
+        xmax, ymax = np.clip((self.places[known] + margin).max(axis=0), 0, 1).tolist()
+        sure = min(1.0, max(0.0, float(np.mean(np.array(self.confidence)[known]))))
+        return made(REGION, header=header, xmin=xmin, ymin=ymin, xmax=xmax, ymax=ymax, c=sure)
+
+
+def _point(place: Sequence[float], confidence: float) -> Any:
+    x, y = place
+    return made(POINT) if math.isnan(x) else made(POINT, x=x, y=y, c=min(1.0, max(0.0, confidence)))

@@ -1,0 +1,75 @@
+"""Whether a body stands, sits, crouches or lies: by the angles of trunk and legs against gravity, and the hips' level.
+
+A person who squats with the thighs level and one who sits differ only by the chair, which no joint shows: the hips'
+level decides. Whatever fits no word, or lacks a leg, is OTHER.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from actum.arrays import Array
+from actum.skeletons import INDEX
+
+OTHER, STANDING, SITTING, CROUCHING, LAYING = range(5)
+"""The constants of hri_msgs/BodyPosture."""
+
+LYING_TRUNK_DEG = 60.0
+"""Least angle of the trunk from the vertical (degrees) of who lies; who bows that far has the legs upright."""
+UPRIGHT_DEG = 45.0
+"""Most angle of the trunk from the vertical (degrees) of who stands or sits."""
+HANGING_DEG = 35.0
+"""Most angle of the thighs from hanging (degrees) of who stands, also in a step."""
+STRAIGHT_DEG = 45.0
+"""Most bend of the knees (degrees) of who stands."""
+SEATED_THIGH_DEG = 42.0
+"""Least angle of the thighs from hanging (degrees) of who sits. Cameras put the hips of who sits too high: in the
+recordings of UTKinect's people 1 to 5, who sit on chairs, the angle is 46 to 57 degrees."""
+CROUCHED_KNEE_DEG = 80.0
+"""Least bend of the knees (degrees) of who crouches."""
+LOW_HIPS = 0.6
+"""Most height of the hips above the feet, in lengths of the shank, of who crouches; seats are higher."""
+HIGHEST_SEAT = 1.75
+"""Most of that height of who sits; of the same people it is 1.4 to 1.7. Of who stands it is 1.9."""
+
+_LEGS = ([INDEX[f"{side}_{joint}"] for joint in ("hip", "knee", "foot")] for side in ("left", "right"))
+_HIPS_KNEES_FEET = np.array(list(_LEGS))
+"""Indices of hip, knee and foot, left and right: (2, 3)."""
+
+
+def posture_of(joints: Array, up_in_camera: Sequence[float] | None) -> int:
+    """Return the constant of hri_msgs/BodyPosture for joints (15, 3; m, camera frame, NaN where unknown).
+
+    One leg is enough. `up_in_camera` is any vector against gravity, None for a level camera.
+    """
+    up = np.array(up_in_camera or (0.0, -1.0, 0.0))
+    up /= np.linalg.norm(up)
+    legs = joints[_HIPS_KNEES_FEET]
+    legs = legs[np.isfinite(legs).all(axis=(1, 2))]
+    trunk = joints[INDEX["neck"]] - joints[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
+    if not len(legs) or not np.isfinite(trunk).all():
+        return OTHER
+    hip, knee, foot = legs.mean(axis=0)
+    return _named(trunk, knee - hip, foot - knee, up)
+
+
+def _named(trunk: Array, thigh: Array, shank: Array, up: Array) -> int:
+    """Return the posture of a trunk, and of the mean thigh and shank, as vectors from the hips up and down (3,)."""
+    tilt, hanging, bend = _angle_deg(trunk, up), _angle_deg(thigh, -up), _angle_deg(thigh, shank)
+    hips = float((thigh + shank) @ -up) / max(float(np.linalg.norm(shank)), 1e-6)
+    if tilt >= LYING_TRUNK_DEG:
+        return LAYING if hips < LOW_HIPS and hanging >= HANGING_DEG else OTHER
+    if tilt <= UPRIGHT_DEG and hanging <= HANGING_DEG and bend <= STRAIGHT_DEG:
+        return STANDING
+    if bend >= CROUCHED_KNEE_DEG and hips < LOW_HIPS:
+        return CROUCHING
+    if tilt <= UPRIGHT_DEG and hanging >= SEATED_THIGH_DEG and LOW_HIPS <= hips <= HIGHEST_SEAT:
+        return SITTING
+    return OTHER
+
+
+def _angle_deg(one: Array, other: Array) -> float:
+    """Return the angle between two vectors (degrees)."""
+    lengths = float(np.linalg.norm(one) * np.linalg.norm(other))
+    return math.degrees(math.acos(max(-1.0, min(1.0, float(one @ other) / max(lengths, 1e-9)))))
