@@ -3,7 +3,7 @@
 import json
 import struct
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,62 +23,20 @@ from people import STANDING, skeleton
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
 from ros2_bridge import message_types as types
+from ros2_nodes import RosNode, config
 from ros2_reading import read, text
 
 pytestmark = pytest.mark.system
 STRING = f"std_msgs::msg::dds_::String_/{types.type_hash(types.STRING)}"
 MARK = f"0/actum/kinect0/mark/{STRING}"
 EVENT_JSON = f"0/actum/kinect0/event_json/{STRING}"
-TOPICS = {"skeletons", "%tf", "%tf_static", "objects", "event", "event_json", "intent", "mark"}
+TOPICS = {
+    *("skeletons", "%tf", "%tf_static", "objects", "event", "event_json", "intent", "mark"),
+    *("%humans%bodies%tracked", "%humans%persons%tracked", "%humans%candidate_matches", "%intents"),
+}
 CUP = TrackedObject(
     id=3, name="cup", position_m=[0.1, 0.2, 1.5], quaternion_xyzw=[0, 0, 0, 1], confidence=0.75, seen=True
 )
-
-
-def config(endpoint: str, mode: str = "peer", listen: str = "tcp/localhost:0") -> zenoh.Config:
-    """What rmw_zenoh's own configuration of nodes, and of its router, comes to."""
-    made = zenoh.Config()
-    for path, value in {
-        "mode": mode,
-        "connect/endpoints": [endpoint],
-        "listen/endpoints": [listen],
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": True,
-        "timestamping/enabled": True,
-    }.items():
-        made.insert_json5(path, json.dumps(value))
-    return made
-
-
-class RosNode:
-    """A session as that of a ROS 2 node, which reads all topics of domain 0."""
-
-    def __init__(self, endpoint: str) -> None:
-        self.session = zenoh.open(config(endpoint))
-        self._received = self.session.declare_subscriber("0/**", zenoh.handlers.FifoChannel(1000))
-        self.samples: list[zenoh.Sample] = []
-
-    def read(self, topic: str, type_name: str) -> list[Any]:
-        """All messages so far of a topic."""
-        while (sample := self._received.try_recv()) is not None:
-            self.samples.append(sample)
-        key = f"0/{topic}/{type_name.replace('/', '::', 1).replace('/', '::dds_::')}_/{types.type_hash(type_name)}"
-        return [read(type_name, it.payload.to_bytes()) for it in self.samples if str(it.key_expr) == key]
-
-    def wait_for(self, topic: str, type_name: str, wanted: Callable[[Any], bool] = bool) -> Any:
-        def found() -> bool:
-            return any(map(wanted, self.read(topic, type_name)))
-
-        wait_until(found, f"a {type_name} on {topic}")
-        return next(filter(wanted, self.read(topic, type_name)))
-
-    def tokens(self) -> list[list[str]]:
-        replies = self.session.liveliness().get("@ros2_lv/0/**", timeout=1.0)
-        return sorted(str(reply.ok.key_expr).split("/") for reply in replies if reply.ok is not None)
-
-    def topics(self) -> set[str]:
-        """What `ros2 topic list` would say of the bridge, without its namespace."""
-        return {token[9].removeprefix("%actum%kinect0%") for token in self.tokens() if len(token) > 9}
 
 
 @pytest.fixture
