@@ -24,16 +24,18 @@ from ros2_bridge.topics import RosTopic
 class Ros2Bridge:
     """Republishes skeletons, objects, events and intents on ROS 2 topics, and takes marks and bodies from others.
 
-    Of images only the camera is used, to say where people are in them.
+    Of images only the camera is used, to say where bodies are in them.
 
     Raises:
         MappingError: the mapping file cannot be used.
     """
 
     name = "ros2_bridge"
-    inputs = (keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT, keys.COLOR)
 
     def __init__(self, settings: Settings) -> None:
+        self.inputs: tuple[keys.Topic, ...] = (keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT)
+        if "bodies" in settings.ros_topics:
+            self.inputs += (keys.COLOR,)
         self.counters = Counters()
         self._settings = settings
         self._humans = Humans(settings, self.counters)

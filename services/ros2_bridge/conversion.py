@@ -1,9 +1,9 @@
 """Our messages as ROS 2's: skeletons as markers and transforms, objects as detections, events, intents."""
 
+import math
 from collections.abc import Iterable, Sequence
+from itertools import compress
 from typing import Any
-
-import numpy as np
 
 from actum.arrays import Array
 from actum.messages import ActedObject, Event, Intended, Intent, Objects, Skeleton, TrackedObject
@@ -53,21 +53,23 @@ def markers(message: Skeleton, people: People, frame_id: str) -> Any:
 
 def _figure(of: Any, person: int, joints: Array) -> list[Any]:
     """Return one person's markers; RViz refuses one that has no points, so there is none."""
-    known = ~np.isnan(joints[:, 0])
-    ends = [joints[end] for *bone, _ in BONES if known[bone].all() for end in bone]
+    places = joints.tolist()
+    known = [not math.isnan(x) for x, _, _ in places]
+    ends = [places[end] for *bone, _ in BONES if all(known[end] for end in bone) for end in bone]
     figure = []
-    if known.any():
-        figure.append(_marker(of, person, 0, SPHERE_LIST, (JOINT_M, JOINT_M, JOINT_M), points=_points(joints[known])))
+    if any(known):
+        balls = _points(compress(places, known))
+        figure.append(_marker(of, person, 0, SPHERE_LIST, (JOINT_M, JOINT_M, JOINT_M), points=balls))
     if ends:
         figure.append(_marker(of, person, 1, LINE_LIST, (BONE_M, 0, 0), points=_points(ends)))
     if known[INDEX["head"]]:
-        x, y, z = joints[INDEX["head"]]
+        x, y, z = places[INDEX["head"]]
         above = pose((x, y - ABOVE_HEAD_M, z), None)
         figure.append(_marker(of, person, 2, TEXT, (0, 0, TEXT_M), pose=above, text=str(person)))
     return figure
 
 
-def _points(positions_m: Iterable[Array]) -> list[Any]:
+def _points(positions_m: Iterable[Sequence[float]]) -> list[Any]:
     return [vector(position, "Point") for position in positions_m]
 
 
@@ -98,8 +100,8 @@ def transforms(message: Skeleton, people: People, frame_id: str) -> Any:
         body = optical_from_body(joints)
         if body is not None:
             placed.append(transform(of, person, body[:3, 3], body[:3, :3]))
-        known = zip(JOINTS, joints, strict=True)
-        placed += [transform(of, f"{person}_{name}", joint) for name, joint in known if not np.isnan(joint).any()]
+        known = zip(JOINTS, joints.tolist(), strict=True)
+        placed += [transform(of, f"{person}_{name}", joint) for name, joint in known if not math.isnan(joint[0])]
     return made(TF_MESSAGE, transforms=placed)
 
 

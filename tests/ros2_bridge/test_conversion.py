@@ -304,7 +304,8 @@ def test_what_is_put_can_be_put_by_any_sender_of_ours() -> None:
 
 
 def test_messages_of_other_kinds_are_nothing_to_it() -> None:
-    assert {topic.message for topic in Ros2Bridge.inputs} == {Skeleton, Objects, Event, Intent, Image}
+    assert {topic.message for topic in Ros2Bridge(Settings()).inputs} == {Skeleton, Objects, Event, Intent, Image}
+    assert Image not in {topic.message for topic in Ros2Bridge(Settings(ros_topics=TODAYS)).inputs}
     start = Segment(sensor="kinect0", kind="start", segment_id="a")
     assert start.stamp_ns is None
     assert put(start) == {}

@@ -3,8 +3,6 @@
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from actum.arrays import Array
 from actum.skeletons import INDEX
 from ros2_bridge.frames import optical_from_body
@@ -49,9 +47,9 @@ class Body:
 
 def body_of(joints: Array) -> Body | None:
     """Return the body of joints (15, 3; m, optical frame, NaN where unknown); None where its frame is not known."""
-    placed = optical_from_body(joints)
-    hips = joints[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
-    if placed is None or not np.isfinite(hips).all():
+    hips = (joints[INDEX["left_hip"]] + joints[INDEX["right_hip"]]) / 2
+    placed = None if math.isnan(hips[0]) else optical_from_body(joints)
+    if placed is None:
         return None
     placed[:3, 3] = hips
     at = dict(zip(LINKS, ((joints[_JOINT_OF_LINK] - hips) @ placed[:3, :3]).tolist(), strict=True))

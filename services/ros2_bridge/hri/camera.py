@@ -126,17 +126,30 @@ class InImage:
 
     def region(self, header: Any) -> Any | None:
         """Return the region around the joints with what a body reaches beyond them; None where no joint is seen."""
-        known = ~np.isnan(self.places[:, 0])
-        if not known.any():
+        joints = zip(self.places.tolist(), self.distances_m.tolist(), self.confidence, strict=True)
+        known = [(x, y, MARGIN_M / distance, sure) for (x, y), distance, sure in joints if not math.isnan(x)]
+        if not known:
             return None
-        focal = np.diag(self.camera.matrix)[:2] / self.camera.size_px
-        margin = MARGIN_M * focal / self.distances_m[known, None]
-        xmin, ymin = np.clip((self.places[known] - margin).min(axis=0), 0, 1).tolist()
-        xmax, ymax = np.clip((self.places[known] + margin).max(axis=0), 0, 1).tolist()
-        sure = min(1.0, max(0.0, float(np.mean(np.array(self.confidence)[known]))))
-        return made(REGION, header=header, xmin=xmin, ymin=ymin, xmax=xmax, ymax=ymax, c=sure)
+        across, down = (
+            self.camera.matrix[0, 0] / self.camera.size_px[0],
+            self.camera.matrix[1, 1] / self.camera.size_px[1],
+        )
+        return made(
+            REGION,
+            header=header,
+            xmin=_within(min(x - margin * across for x, _, margin, _ in known)),
+            ymin=_within(min(y - margin * down for _, y, margin, _ in known)),
+            xmax=_within(max(x + margin * across for x, _, margin, _ in known)),
+            ymax=_within(max(y + margin * down for _, y, margin, _ in known)),
+            c=_within(sum(sure for *_, sure in known) / len(known)),
+        )
 
 
 def _point(place: Sequence[float], confidence: float) -> Any:
     x, y = place
-    return made(POINT) if math.isnan(x) else made(POINT, x=x, y=y, c=min(1.0, max(0.0, confidence)))
+    return made(POINT) if math.isnan(x) else made(POINT, x=x, y=y, c=_within(confidence))
+
+
+def _within(number: float) -> float:
+    """Return a number, or the nearest from 0 to 1."""
+    return float(min(1.0, max(0.0, number)))

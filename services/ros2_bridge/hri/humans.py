@@ -21,7 +21,7 @@ from ros2_bridge.settings import Settings
 from ros2_bridge.topics import BODIES_TRACKED, CANDIDATE_MATCHES, INTENTS, PERSONS_TRACKED, TF
 
 REPEAT_NS = SECOND_NS
-"""How often (ns) matches are published again, for nodes that came later."""
+"""How often (ns) what seldom changes is published again, for nodes that came later."""
 CURRENTLY_SEEN = 1.0
 """The location confidence of a person who is seen, by REP 155."""
 
@@ -39,12 +39,14 @@ class Humans:
         self._present = Present()
         self._topics = Announcing(settings)
         self._camera: Camera | None = None
+        self._postures: dict[Human, int] = {}
         self._now_ns = self._repeated_ns = self._stamp_ns = 0
         self._is_wanted = bool({"bodies", "body_links", "persons", "intents"} & settings.chosen_topics)
 
     def begin(self, session_id: str, lasting: Iterable[ForeignTopic]) -> None:
         """Begin anew in a Zenoh session in which the lasting topics are published: nobody is there."""
         self._present.begin(session_id)
+        self._postures.clear()
         self._topics.begin(session_id, lasting)
 
     def tick(self, now_ns: int) -> Iterator[Output]:
@@ -55,7 +57,7 @@ class Humans:
         if now_ns - self._repeated_ns >= REPEAT_NS:
             self._repeated_ns = now_ns
             for human in self._present.humans:
-                yield from self._topics.on(CANDIDATE_MATCHES.name, converting.match(human, 1.0))
+                yield from self._known(human)
 
     def look(self, image: Image) -> Iterator[Output]:
         """Take the camera of an image."""
@@ -112,12 +114,25 @@ class Humans:
         yield from self._topics.announce(human.topics(self._camera is not None, bool(self._mapping.gestures)))
         yield from self._topics.on(human.person_topic("body_id"), made(STRING, data=human.body))
         yield from self._topics.on(human.person_topic("anonymous"), made(hri.BOOL, data=True))
+        yield from self._known(human)
+
+    def _known(self, human: Human) -> Iterator[Output]:
+        """Say what seldom changes of somebody."""
         yield from self._topics.on(CANDIDATE_MATCHES.name, converting.match(human, 1.0))
+        yield from self._topics.on(human.person_topic("location_confidence"), made(hri.FLOAT, data=CURRENTLY_SEEN))
+        yield from self._posture(human)
+
+    def _posture(self, human: Human) -> Iterator[Output]:
+        if human in self._postures:
+            of = header(self._stamp_ns, self._settings.frame_id)
+            message = made(hri.BODY_POSTURE, header=of, posture=self._postures[human])
+            yield from self._topics.on(human.body_topic("posture"), message)
 
     def _leave(self, run: str) -> Iterator[Output]:
         for human in self._present.leave(run, self._now_ns):
             yield from self._topics.on(CANDIDATE_MATCHES.name, converting.match(human, 0.0))
             yield from self._topics.withdraw(human.topics(of_image=True, gestures=True))
+            self._postures.pop(human, None)
 
     def _tracked(self) -> Iterator[Output]:
         of, humans = header(self._stamp_ns, self._settings.frame_id), self._present.humans
@@ -134,8 +149,9 @@ class Humans:
             placed += converting.frames(of, human, body, "body_links" in chosen, "persons" in chosen)
             yield from on(human.body_topic("joint_states"), converting.joint_states(of, human, body))
         posture = posture_of(joints, message.up_in_camera)
-        yield from on(human.body_topic("posture"), made(hri.BODY_POSTURE, header=of, posture=posture))
-        yield from on(human.person_topic("location_confidence"), made(hri.FLOAT, data=CURRENTLY_SEEN))
+        if posture != self._postures.get(human):
+            self._postures[human] = posture
+            yield from self._posture(human)
         if self._camera is not None:
             seen = self._camera.seen(joints, agent.confidence)
             yield from on(human.body_topic("skeleton2d"), seen.skeleton_2d(of))

@@ -7,8 +7,6 @@ level decides. Whatever fits no word, or lacks a leg, is OTHER.
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from actum.arrays import Array
 from actum.skeletons import INDEX
 
@@ -33,9 +31,10 @@ LOW_HIPS = 0.6
 HIGHEST_SEAT = 1.75
 """Most of that height of who sits; of the same people it is 1.4 to 1.7. Of who stands it is 1.9."""
 
-_LEGS = ([INDEX[f"{side}_{joint}"] for joint in ("hip", "knee", "foot")] for side in ("left", "right"))
-_HIPS_KNEES_FEET = np.array(list(_LEGS))
-"""Indices of hip, knee and foot, left and right: (2, 3)."""
+_LEGS = [tuple(INDEX[f"{side}_{joint}"] for joint in ("hip", "knee", "foot")) for side in ("left", "right")]
+"""Indices of hip, knee and foot, left and right."""
+
+Vector = Sequence[float]
 
 
 def posture_of(joints: Array, up_in_camera: Sequence[float] | None) -> int:
@@ -43,21 +42,21 @@ def posture_of(joints: Array, up_in_camera: Sequence[float] | None) -> int:
 
     One leg is enough. `up_in_camera` is any vector against gravity, None for a level camera.
     """
-    up = np.array(up_in_camera or (0.0, -1.0, 0.0))
-    up /= np.linalg.norm(up)
-    legs = joints[_HIPS_KNEES_FEET]
-    legs = legs[np.isfinite(legs).all(axis=(1, 2))]
-    trunk = joints[INDEX["neck"]] - joints[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
-    if not len(legs) or not np.isfinite(trunk).all():
+    points = joints.tolist()
+    legs = [[points[i] for i in leg] for leg in _LEGS]
+    whole = [leg for leg in legs if all(map(math.isfinite, (*leg[0], *leg[1], *leg[2])))]
+    trunk = _between(_middle(legs[0][0], legs[1][0]), points[INDEX["neck"]])
+    if not whole or not all(map(math.isfinite, trunk)):
         return OTHER
-    hip, knee, foot = legs.mean(axis=0)
-    return _named(trunk, knee - hip, foot - knee, up)
+    hip, knee, foot = (_middle(whole[0][i], whole[-1][i]) for i in range(3))
+    return _named(trunk, _between(hip, knee), _between(knee, foot), up_in_camera or (0.0, -1.0, 0.0))
 
 
-def _named(trunk: Array, thigh: Array, shank: Array, up: Array) -> int:
-    """Return the posture of a trunk, and of the mean thigh and shank, as vectors from the hips up and down (3,)."""
-    tilt, hanging, bend = _angle_deg(trunk, up), _angle_deg(thigh, -up), _angle_deg(thigh, shank)
-    hips = float((thigh + shank) @ -up) / max(float(np.linalg.norm(shank)), 1e-6)
+def _named(trunk: Vector, thigh: Vector, shank: Vector, up: Vector) -> int:
+    """Return the posture of a trunk, and of the mean thigh and shank, as vectors from the hips up and down (m)."""
+    down = [-each / math.hypot(*up) for each in up]
+    tilt, hanging, bend = 180 - _angle_deg(trunk, down), _angle_deg(thigh, down), _angle_deg(thigh, shank)
+    hips = (_dot(thigh, down) + _dot(shank, down)) / max(math.hypot(*shank), 1e-6)
     if tilt >= LYING_TRUNK_DEG:
         return LAYING if hips < LOW_HIPS and hanging >= HANGING_DEG else OTHER
     if tilt <= UPRIGHT_DEG and hanging <= HANGING_DEG and bend <= STRAIGHT_DEG:
@@ -69,7 +68,19 @@ def _named(trunk: Array, thigh: Array, shank: Array, up: Array) -> int:
     return OTHER
 
 
-def _angle_deg(one: Array, other: Array) -> float:
+def _angle_deg(one: Vector, other: Vector) -> float:
     """Return the angle between two vectors (degrees)."""
-    lengths = float(np.linalg.norm(one) * np.linalg.norm(other))
-    return math.degrees(math.acos(max(-1.0, min(1.0, float(one @ other) / max(lengths, 1e-9)))))
+    lengths = max(math.hypot(*one) * math.hypot(*other), 1e-9)
+    return math.degrees(math.acos(max(-1.0, min(1.0, _dot(one, other) / lengths))))
+
+
+def _dot(one: Vector, other: Vector) -> float:
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+
+
+def _between(start: Vector, end: Vector) -> Vector:
+    return [end[0] - start[0], end[1] - start[1], end[2] - start[2]]
+
+
+def _middle(one: Vector, other: Vector) -> Vector:
+    return [(one[0] + other[0]) / 2, (one[1] + other[1]) / 2, (one[2] + other[2]) / 2]
