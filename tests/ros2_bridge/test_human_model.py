@@ -74,10 +74,24 @@ def test_the_waist_bends_the_trunk_forward_and_leaves_the_legs() -> None:
     assert found["l_ankle"] == places()["l_ankle"]
 
 
+def test_the_middle_of_the_trunk_bends_by_half() -> None:
+    assert places()["spine"] == pytest.approx((0, 0, TORSO_M / 2))
+    x, y, z = places(waist=QUARTER)["spine"]
+    assert (x, y, math.hypot(x, z)) == pytest.approx((z, 0, TORSO_M / 2))
+
+
 def test_what_hangs_on_an_unknown_angle_has_no_place() -> None:
-    del_elbow = {name: angle for name, angle in UPRIGHT.items() if name != "l_elbow"}
-    assert {*places()} - {*link_places(del_elbow)} == {"l_elbow", "l_wrist"}
-    assert {*places()} - {*places(r_p_hip=math.nan)} == {"r_p_hip", "r_hip", "r_knee", "r_ankle"}
+    without_elbow = {name: angle for name, angle in UPRIGHT.items() if name != "l_elbow"}
+    assert {*places()} - {*link_places(without_elbow)} == {"l_wrist"}
+    assert {*places()} - {*places(r_p_hip=math.nan)} == {"r_hip", "r_knee", "r_ankle"}
+    assert {*places()} - {*places(waist=math.nan)} >= {"torso", "spine", "head", "l_wrist"}
+
+
+def test_an_unknown_twist_of_the_upper_arm_leaves_the_elbow_where_it_is() -> None:
+    lifted = {"l_p_shoulder": QUARTER, "l_y_shoulder": 0.3}
+    known, unknown = places(**lifted), places(**lifted, l_r_shoulder=math.nan)
+    assert unknown["l_elbow"] == pytest.approx(known["l_elbow"])
+    assert "l_wrist" not in unknown
 
 
 def test_a_placement_and_its_inverse_lead_back() -> None:

@@ -35,6 +35,10 @@ SHANK_M = _UNIT_M * 2
 """From the knee to the ankle (m)."""
 
 
+SPINE = "spine"
+"""The name of the middle of the trunk, as the bridge's own frames have it."""
+
+
 @dataclass(frozen=True)
 class Link:
     """A link of the model: its parent, where it begins in it (m), and the joint between them with its axis.
@@ -83,14 +87,26 @@ LINKS: tuple[Link, ...] = (
 
 
 def link_places(angles_rad: Mapping[str, float]) -> dict[str, Vector]:
-    """Return where links begin (m) in the body's frame, by their name; a link behind an unknown angle is left out.
+    """Return where links begin (m) in the body's frame, by their name; what no angles determine is left out.
+
+    The middle of the trunk is among them, which is no link: a trunk that bends evenly bends there by half.
 
     Args:
         angles_rad: the angle of each joint, by its name without the body's id; NaN where it is unknown.
     """
-    placed = {"body": Placement()}
+    placed, twisted = {"body": Placement()}, dict[str, Placement]()
+    places = {"body": (0.0, 0.0, 0.0)}
     for link in LINKS:
         angle_rad = 0.0 if link.joint is None else angles_rad.get(link.joint, math.nan)
+        parent = placed.get(link.parent) or (twisted.get(link.parent) if link.origin_m[:2] == (0, 0) else None)
+        if parent is None:
+            continue
+        places[link.name] = parent.at(link.origin_m)
         if link.parent in placed and math.isfinite(angle_rad):
-            placed[link.name] = placed[link.parent].of(Placement(link.origin_m, turned(link.axis, angle_rad)))
-    return {name: place.position_m for name, place in placed.items()}
+            placed[link.name] = parent.of(Placement(link.origin_m, turned(link.axis, angle_rad)))
+        elif link.parent in placed and link.axis[:2] == (0, 0):  # an unknown twist about z leaves the end of a limb
+            twisted[link.name] = parent.of(Placement(link.origin_m))
+    if "waist" in placed:
+        half_rad = angles_rad["waist"] / 2
+        places[SPINE] = (math.sin(half_rad) * TORSO_M / 2, 0.0, math.cos(half_rad) * TORSO_M / 2)
+    return places
