@@ -112,11 +112,11 @@ def lines(data: ImportedSets) -> Iterator[str]:
     odd, even = ([each for each in recordings if int(each.person) % 2 == rest] for rest in (1, 0))
     model = train(samples_from(odd).usable, DEFAULT, SEED)
     plain = answers(model, even)
-    yield f"{'as recorded':<26}{_right(plain, plain)}"
+    yield f"{'as recorded':<27}{_right(plain, plain)}"
     for way in (ALL, OF_THE_MODEL, ANGLES):
         found = answers(model, [ThroughRos(each.path, way) for each in even])
         same = sum(found.get(name, ("",))[0] == label for name, (label, _) in plain.items())
-        yield f"{way:<26}{_right(found, plain)}; the same answer to {same} ({100 * same / len(plain):.1f} %)"
+        yield f"{way:<27}{_right(found, plain)}; the same answer to {same} ({100 * same / len(plain):.1f} %)"
 
 
 def _right(found: Answers, of: Answers) -> str:

@@ -89,13 +89,13 @@ LINKS: tuple[Link, ...] = (
 def link_places(angles_rad: Mapping[str, float]) -> dict[str, Vector]:
     """Return where links begin (m) in the body's frame, by their name; what no angles determine is left out.
 
-    The middle of the trunk is among them, which is no link: a trunk that bends evenly bends there by half.
+    The middle of the trunk is among them, which is no link: it is on the body's z, by which the bridge places bodies.
 
     Args:
         angles_rad: the angle of each joint, by its name without the body's id; NaN where it is unknown.
     """
     placed, twisted = {"body": Placement()}, dict[str, Placement]()
-    places = {"body": (0.0, 0.0, 0.0)}
+    places = {"body": (0.0, 0.0, 0.0), SPINE: (0.0, 0.0, TORSO_M / 2)}
     for link in LINKS:
         angle_rad = 0.0 if link.joint is None else angles_rad.get(link.joint, math.nan)
         parent = placed.get(link.parent) or (twisted.get(link.parent) if link.origin_m[:2] == (0, 0) else None)
@@ -106,7 +106,4 @@ def link_places(angles_rad: Mapping[str, float]) -> dict[str, Vector]:
             placed[link.name] = parent.of(Placement(link.origin_m, turned(link.axis, angle_rad)))
         elif link.parent in placed and link.axis[:2] == (0, 0):  # an unknown twist about z leaves the end of a limb
             twisted[link.name] = parent.of(Placement(link.origin_m))
-    if "waist" in placed:
-        half_rad = angles_rad["waist"] / 2
-        places[SPINE] = (math.sin(half_rad) * TORSO_M / 2, 0.0, math.cos(half_rad) * TORSO_M / 2)
     return places
