@@ -24,7 +24,7 @@ PAGES = [
     for page in (
         *("start", "cameras", "objects", "teaching", "spotting", "page", "messages", "words"),
         *("operating", "settings", "commands", "two-machines", "containers", "restarts"),
-        *("ros2", "viewers", "som", "measured", "paper", "architecture"),
+        *("ros2", "ros4hri", "viewers", "som", "measured", "paper", "architecture"),
     )
 ]
 RESULTS = {

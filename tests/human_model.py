@@ -1,4 +1,4 @@
-"""The kinematic model of human_description's `urdf/human-tpl.xacro` (1.0.1), written from it for tests, and its poses.
+"""The kinematic model of human_description's `urdf/human-tpl.xacro` (2.0.2), written from it for tests, and its poses.
 
 Lengths are in units of a 7.5th of the height, as there.
 """

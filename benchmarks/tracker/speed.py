@@ -14,9 +14,9 @@ from typing import Any
 import cv2
 import numpy as np
 
+from actum.images import gray
 from actum.messages import Image
 from marker_tracker.detection.families import family
-from marker_tracker.detection.images import gray
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 

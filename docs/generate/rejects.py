@@ -223,6 +223,10 @@ OF_FUSION_AND_BRIDGE: Mapping[str, Problem] = {
 }
 
 OF_BRIDGE: Mapping[str, Problem] = {
+    "unusable_image": Problem(
+        "An image from which people are to be cut out is damaged or too large; the latest error says why.",
+        "Send whole JPEG files as `data`, of at most 4096 × 4096 pixels.",
+    ),
     "unusable_camera": Problem(
         "An image's focal lengths are not positive, or its `skeleton_from_image` is not rigid. People's places in the "
         "image are those of the camera before.",

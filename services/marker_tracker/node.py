@@ -3,11 +3,11 @@
 from collections.abc import Iterable
 
 from actum import keys
+from actum.images import UnusableImageError, gray, refuse_black
 from actum.messages import Image, Message, Objects, TrackedObject
 from actum.node import SECOND_NS, Counters, Tick
 from actum.stamps import Order, StampGuard
 from marker_tracker.detection.detector import MarkerDetector
-from marker_tracker.detection.images import UnusableImageError, gray, refuse_black
 from marker_tracker.occlusion.occluder_tracker import OccluderTracker
 from marker_tracker.occlusion.partial_occlusion import PartialOcclusionTracker
 from marker_tracker.pose.camera_model import camera_model

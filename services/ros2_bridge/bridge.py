@@ -13,8 +13,8 @@ from actum.messages import Agent, Event, Image, Intent, Message, Objects, Skelet
 from actum.node import Counters, Tick
 from actum.skeletons import JOINTS
 from ros2_bridge import conversion, frames, topics
-from ros2_bridge.hri.humans import Humans
 from ros2_bridge.hri_in.body_reader import BodyReader
+from ros2_bridge.hri_out.humans import Humans
 from ros2_bridge.marks import BadMarkError, segment_of
 from ros2_bridge.message_types import to_cdr
 from ros2_bridge.settings import Settings
@@ -34,7 +34,7 @@ class Ros2Bridge:
 
     def __init__(self, settings: Settings) -> None:
         self.inputs: tuple[keys.Topic, ...] = (keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT)
-        if "bodies" in settings.ros_topics:
+        if {"bodies", "cropped"} & settings.chosen_topics:
             self.inputs += (keys.COLOR,)
         self.counters = Counters()
         self._settings = settings

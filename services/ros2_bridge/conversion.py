@@ -147,7 +147,7 @@ def action_event(event: Event, frame_id: str) -> Any:
         displacement_known=event.motion is not None,
         displacement=vector(event.motion.displacement_m if event.motion else (0, 0, 0)),
         direction=event.motion.direction or "" if event.motion else "",
-        agrees_known=event.agrees is not None,
+        agreement_known=event.agrees is not None,
         agrees=bool(event.agrees),
         sentence=event.sentence,
         **texts,

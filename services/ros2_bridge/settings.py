@@ -10,10 +10,13 @@ from pydantic_settings import NoDecode
 from actum.settings import ServiceSettings
 
 TopicName = Literal[
-    "skeletons", "tf", "objects", "event", "event_json", "intent", "mark", "bodies", "body_links", "persons", "intents"
-]
-"""What can be published and, of `mark`, subscribed to. The last four are ROS4HRI's."""
-OF_BODIES: frozenset[TopicName] = frozenset(("bodies", "body_links", "persons"))
+    "skeletons", "tf", "objects", "event", "event_json", "intent", "mark",
+    "bodies", "body_links", "cropped", "persons", "intents",
+]  # fmt: skip
+"""What can be published and, of `mark`, subscribed to. The last five are ROS4HRI's."""
+UNLESS_CHOSEN: frozenset[TopicName] = frozenset(get_args(TopicName)) - {"cropped"}
+"""What is exchanged unless topics are chosen: all but pictures of people."""
+OF_BODIES: frozenset[TopicName] = frozenset(("bodies", "body_links", "cropped", "persons"))
 """The words for topics on which the bridge describes bodies."""
 OTHERS: Literal["others"] = "others"
 """The word for the topics on which other nodes describe bodies, which `ros_bodies` chooses."""
@@ -44,8 +47,11 @@ class Settings(ServiceSettings):
         ),
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
-        frozenset(get_args(TopicName)),
-        description="the topics to exchange with ROS 2, separated by commas, such as event,mark",
+        UNLESS_CHOSEN,
+        description=(
+            "the topics to exchange with ROS 2, separated by commas, such as event,mark; default: all except cropped, "
+            "which publishes images of people"
+        ),
     )
     ros_hri_mapping: Path | None = Field(
         None,

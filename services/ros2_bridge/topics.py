@@ -54,7 +54,7 @@ PUBLISHED = (
     *(SKELETONS, TF, TF_STATIC, OBJECTS, EVENT, EVENT_JSON, INTENT),
     *(BODIES_TRACKED, PERSONS_TRACKED, CANDIDATE_MATCHES, INTENTS),
 )
-"""Published as long as the bridge runs; the topics of one body or person, `ros2_bridge.hri.present`, come and go."""
+"""Published as long as the bridge runs. Those of one body or person, in `ros2_bridge.hri_out.present`, come and go."""
 SUBSCRIBED = (MARK, OTHERS_TRACKED, OTHERS_TF, OTHERS_TF_STATIC, OTHERS_JOINT_STATES, OTHERS_SKELETON_2D)
 
 

@@ -220,12 +220,12 @@ def test_an_event_says_what_became_of_the_object_and_of_others_that_are_as_likel
     assert (typed.taken_along, typed.in_hand_at_end, typed.direction) == (True, True, "up")
     assert (typed.fixed_frame, xyz(typed.fixed_pose.position)) == ("world", [4, 5, 6])
     assert (typed.held_id, typed.held_name, typed.candidate_ids) == ("7", "knife", ["1", "9"])
-    assert (typed.agrees_known, typed.agrees, typed.result, typed.session_id) == (True, False, "0.20 m up", "monday")
+    assert (typed.agreement_known, typed.agrees, typed.result, typed.session_id) == (True, False, "0.20 m up", "monday")
 
 
 def test_what_is_not_known_of_an_event_is_empty() -> None:
     typed = put(told(object=None, held=None, motion=None, agrees=None, why="nothing was near"))["event"]
-    assert (typed.why, typed.agrees_known, typed.direction, typed.result) == ("nothing was near", False, "", "")
+    assert (typed.why, typed.agreement_known, typed.direction, typed.result) == ("nothing was near", False, "", "")
     assert (typed.fixed_frame, typed.held_name, typed.candidate_ids, typed.taken_along) == ("", "", [], False)
 
 
@@ -323,7 +323,7 @@ CARRIED = {
     "held": {"held_id", "held_name"},
     "motion": {"displacement_known", "displacement", "direction"},
     "candidates": {"candidate_ids"},
-    "agrees": {"agrees_known", "agrees"},
+    "agrees": {"agreement_known", "agrees"},
     **{
         name: {name}
         for name in (

@@ -15,7 +15,7 @@ from actum.skeletons import INDEX
 from humans import NEAR, image
 from people import STANDING, lacking
 from ros2_bridge.frames import header
-from ros2_bridge.hri.camera import KEYPOINTS, Camera, UnusableCameraError
+from ros2_bridge.hri_out.camera import KEYPOINTS, Camera, UnusableCameraError
 
 SURE = [1.0] * 15
 LENS = [-0.28, 0.09, 0.001, -0.002, -0.01, 0.02, 0.01, 0.003, 0.001, 0.0005, -0.001, 0.0002]

@@ -13,8 +13,8 @@ pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
 from actum.skeletons import INDEX
 from people import STANDING, lacking
-from ros2_bridge.hri.posture import CROUCHING, LAYING, OTHER, SITTING, posture_of
-from ros2_bridge.hri.posture import STANDING as STANDS
+from ros2_bridge.hri_out.posture import CROUCHING, LAYING, OTHER, SITTING, posture_of
+from ros2_bridge.hri_out.posture import STANDING as STANDS
 
 LEGS = [f"{side}_{joint}" for side in ("left", "right") for joint in ("knee", "foot")]
 

@@ -9,9 +9,10 @@ from conftest import NEEDS_ROS2_EXTRA
 
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
+from actum.messages import MOST_AGENTS
 from humans import NEAR, Room, image
 from people import STANDING, lacking, skeleton, turned
-from ros2_bridge.hri.body import LINKS, body_of
+from ros2_bridge.hri_out.body import LINKS, body_of
 from ros2_bridge.topics import PUBLISHED
 
 AT_NS = 7_000_000_008
@@ -49,6 +50,17 @@ def test_who_is_lost_for_a_moment_stays_and_who_is_gone_is_withdrawn_with_all_to
     assert room.bodies == room.persons == []
     assert people_topics(room) == set()
     assert {*room.withdrawn} == topics
+
+
+def test_numbers_that_change_with_each_frame_do_not_open_topics_without_end() -> None:
+    room = Room()
+    for frame in range(3):
+        crowd = skeleton(AT_NS + frame, *[STANDING] * 40)
+        agents = [agent.model_copy(update={"agent": agent.agent + 40 * frame}) for agent in crowd.agents]
+        room.handle(crowd.model_copy(update={"agents": agents}))
+    assert len(room.bodies) == MOST_AGENTS
+    assert room.bridge.counters.counts == {"one person too many, left out of /humans": 3 * 40 - MOST_AGENTS}
+    assert room.wait(2).bodies == []
 
 
 def test_people_whose_sensor_falls_silent_go_too() -> None:

@@ -1,4 +1,4 @@
-"""How libhri 2.3.0 (C++; pyhri wraps it) reads people: each rule with the source file that it was read from.
+"""How libhri 2.9.0 (C++; pyhri wraps it) reads people: each rule with the source file that it was read from.
 
 libhri itself needs ROS 2 and cannot run here.
 """

@@ -25,9 +25,13 @@ HASHES = {
     "hri_msgs/msg/IdsList": "RIHS01_7e0812d1ac945c98fd3e393568d581ad0ab567f37b24eff633eab778c1bfe62d",
     "hri_msgs/msg/Skeleton2D": "RIHS01_1cb61f012db6ca43c48fa0097ccab9a00108ea39323c13f01bb983323c1e3420",
     "hri_msgs/msg/Gesture": "RIHS01_06e95e9d3a204e075adfa05b9d737e48c51e1a2004ef762886ff82438bc9958d",
+    "hri_msgs/msg/BodyPosture": "RIHS01_fa4258f18cc616a912e5aa1d48dbfead0fa5235a8546b4c69b70d64db7cef570",
+    "hri_msgs/msg/IdsMatch": "RIHS01_1c649d4a87ca2d4fe5f606395e83a863640e411c9192dfda6d399a68019966f0",
+    "hri_actions_msgs/msg/Intent": "RIHS01_850d5c0a06aecf153f4cbc75f27fc655d687f93300bcc928a9d21712716fcfaa",
     "hri_msgs/msg/NormalizedRegionOfInterest2D": "RIHS01_2e50c93f1ca166ee77af9a5424dc951ae4e452b740162a7f83c082d917dcaff5",  # noqa: E501
 }
-"""As other programs have them that speak with ROS 2."""
+"""As other programs have them that speak with ROS 2; those of ROS4HRI computed from the files of the releases for
+Jazzy, hri_msgs 2.3.2 and hri_actions_msgs 2.5.0."""
 STRING = f"std_msgs::msg::dds_::String_/{HASHES['std_msgs/msg/String']}"
 
 
@@ -36,7 +40,7 @@ def test_types_have_the_hashes_by_which_ros_knows_them() -> None:
 
 
 OWN_HASHES = {
-    "actum_msgs/msg/ActionEvent": "RIHS01_c3fbee04ffc704da5b7ecee8715de35d81c93a6f4d58050ee155d281041f0b79",
+    "actum_msgs/msg/ActionEvent": "RIHS01_d8a60b44f4bf56713c2c49aaa46af0819c25e9308c74a03060d9fa8d8d9b5000",
     "actum_msgs/msg/ActionIntent": "RIHS01_bea2105f464a869011676c1e27e0aec06d15aa833de0487f00ef82e618f1d01c",
     "actum_msgs/msg/IntendedContact": "RIHS01_d0a7dcef45a32c2dac299e2b64ec6d64ea13b41dbcb78cb06f5012958eb4d5ea",
     "actum_msgs/msg/PersonAction": "RIHS01_5b617083ac53fc605a8b45c54b6dc15db9e083cf6a1d0833810adac1b678d2c9",

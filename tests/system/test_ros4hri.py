@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 import zenoh
@@ -20,6 +20,7 @@ pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 from people import STANDING, skeleton
 from ros2_bridge import message_types as types
 from ros2_bridge.hri import types as hri
+from ros2_bridge.settings import TopicName
 from ros2_nodes import RosNode, config
 from ros2_reading import read
 
@@ -31,6 +32,7 @@ intents: {wave: {intent: BRING_OBJECT, object: "{object}", recipient: "{person}"
 OF_BODY = {
     "roi": hri.REGION,
     "skeleton2d": hri.SKELETON_2D,
+    "cropped": hri.IMAGE,
     "joint_states": hri.JOINT_STATE,
     "posture": hri.BODY_POSTURE,
     "gesture": hri.GESTURE,
@@ -48,7 +50,10 @@ def node(running: System, tmp_path: Path) -> Iterator[RosNode]:
     """A ROS 2 node that sees the bridge."""
     (tmp_path / "mapping.yaml").write_text(MAPPING, encoding="utf-8")
     running.start_router()
-    running.start("actum_command", "ros2", "--ros-hri-mapping", str(tmp_path / "mapping.yaml"))
+    everything = ",".join(get_args(TopicName))
+    running.start(
+        "actum_command", "ros2", "--ros-hri-mapping", str(tmp_path / "mapping.yaml"), "--ros-topics", everything
+    )
     with running.client() as client:
         running.wait_for_services(client, "ros2_bridge")
         assert client.wait_for_subscriber(keys.SKELETON, PATIENCE_S)
@@ -114,6 +119,24 @@ def test_topics_vanish_with_the_person_and_come_back_under_another_id(running: S
             return any(it.ids and it.ids[0] != first for it in node.read("humans/bodies/tracked", hri.IDS_LIST))
 
         wait_until(another, "the person is another body")
+
+
+@pytest.mark.pose_model
+@pytest.mark.data
+def test_a_person_in_a_webcams_clip_is_a_body_with_a_place_in_the_image(
+    running: System, node: RosNode, data: Path
+) -> None:
+    clip = data / "florence3d_rgb" / "GestureRecording_Id1actor1idAction1category1.mp4"
+    running.start("sensor_gateway", "--source", "camera", "--camera", str(clip))
+    body = somebody(node, "bodies")
+    points = node.wait_for(f"humans/bodies/{body}/skeleton2d", hri.SKELETON_2D).skeleton
+    region = node.wait_for(f"humans/bodies/{body}/roi", hri.REGION)
+    nose, right_shoulder, left_shoulder = points[0], points[2], points[5]
+    assert nose.y < min(right_shoulder.y, left_shoulder.y)
+    assert right_shoulder.x < left_shoulder.x, "the person faces the camera"
+    assert region.xmin <= right_shoulder.x <= region.xmax
+    assert region.ymin <= nose.y <= region.ymax
+    assert node.wait_for(f"humans/bodies/{body}/joint_states", hri.JOINT_STATE).name
 
 
 LISTENER = """

@@ -6,9 +6,9 @@ import numpy as np
 
 from actum import geometry
 from actum.arrays import Array
+from actum.images import UnusableImageError
 from actum.limits import MAX_COORDINATE_M
 from actum.messages import Image
-from marker_tracker.detection.images import UnusableImageError
 
 LARGEST_FOCAL_PX = 1e5
 """Pixels: a hundred times the focal length of usual cameras; a larger one is in the wrong unit."""

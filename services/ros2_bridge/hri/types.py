@@ -13,6 +13,7 @@ BODY_POSTURE = "hri_msgs/msg/BodyPosture"
 GESTURE = "hri_msgs/msg/Gesture"
 INTENT = "hri_actions_msgs/msg/Intent"
 JOINT_STATE = "sensor_msgs/msg/JointState"
+IMAGE = "sensor_msgs/msg/Image"
 BOOL = "std_msgs/msg/Bool"
 FLOAT = "std_msgs/msg/Float32"
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from actum.arrays import Array
 from actum.skeletons import INDEX
 from ros2_bridge.frames import optical_from_body
-from ros2_bridge.hri.limbs import SIDES, Limb, Quaternion, Vector, arm, head, inverse, leg, product, rotated
+from ros2_bridge.hri_out.limbs import SIDES, Limb, Quaternion, Vector, arm, head, inverse, leg, product, rotated
 
 LINKS = {
     "torso": "neck",

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import count
 
+from actum.messages import MOST_AGENTS
 from actum.node import SECOND_NS
 from ros2_bridge.hri import types as hri
 from ros2_bridge.message_types import PERSON_ACTION, STRING
@@ -55,6 +56,7 @@ class Human:
         """Yield the body's topics that a camera is needed for."""
         yield RosTopic(self.body_topic("roi"), hri.REGION, "bodies")
         yield RosTopic(self.body_topic("skeleton2d"), hri.SKELETON_2D, "bodies")
+        yield RosTopic(self.body_topic("cropped"), hri.IMAGE, "cropped")
 
 
 class Present:
@@ -87,13 +89,14 @@ class Present:
         return self._humans.get(agent) if run in (self.run, "") else None
 
     def see(self, agents: Iterable[int], now_ns: int) -> list[Human]:
-        """Take note of who is seen, and return who is new."""
+        """Take note of who is seen, and return who is new: at most so many that `MOST_AGENTS` are there."""
         new = []
         for agent in agents:
-            self._seen_ns[agent] = now_ns
-            if agent not in self._humans:
+            if agent not in self._humans and len(self._humans) < MOST_AGENTS:
                 self._humans[agent] = Human(agent, self._new_id(), self._new_id())
                 new.append(self._humans[agent])
+            if agent in self._humans:
+                self._seen_ns[agent] = now_ns
         return new
 
     def leave(self, run: str, now_ns: int) -> list[Human]:

@@ -41,7 +41,7 @@ INDEPENDENT, RIGHT, LEFT = range(3)
 """The constants of hri_msgs/Gesture for the hand."""
 INTENT_NAMES = (
     *("ENGAGE_WITH", "MOVE_TO", "GUIDE", "GRAB_OBJECT", "BRING_OBJECT", "PLACE_OBJECT", "GREET", "SAY"),
-    *("PRESENT_CONTENT", "PERFORM_MOTION", "START_ACTIVITY", "STOP_ACTIVITY"),
+    *("PRESENT_CONTENT", "PERFORM_MOTION", "START_ACTIVITY", "STOP_ACTIVITY", "WAKEUP", "SUSPEND"),
 )
 """The constants of hri_actions_msgs/Intent; each stands for the text `__intent_<name in lower case>__`."""
 

@@ -9,9 +9,9 @@ import numpy as np
 from actum.messages import Event
 from ros2_bridge.frames import header, ros_time, transform, transform_xyzw
 from ros2_bridge.hri import types as hri
-from ros2_bridge.hri.body import Body
-from ros2_bridge.hri.mapping import INDEPENDENT, LEFT, RIGHT, GestureRule, IntentRule
-from ros2_bridge.hri.present import Human
+from ros2_bridge.hri_out.body import Body
+from ros2_bridge.hri_out.mapping import INDEPENDENT, LEFT, RIGHT, GestureRule, IntentRule
+from ros2_bridge.hri_out.present import Human
 from ros2_bridge.message_types import PERSON_ACTION, made
 
 PERSON, BODY = 1, 3

@@ -1,6 +1,6 @@
 """Angles of a body's joints by the human model of ROS4HRI, from the directions of its bones.
 
-The model is human_description's `urdf/human-tpl.xacro` (1.0.1). Its axes are the body's: x forward, y left, z up. Limbs
+The model is human_description's `urdf/human-tpl.xacro` (2.0.2). Its axes are the body's: x forward, y left, z up. Limbs
 hang along -z where all angles are 0. A shoulder turns about z, x and z of the upper arm, a hip about z, x and y of the
 thigh, elbows and knees about -y, and the head about x and -y. Axes that the model mirrors have the sign of the side.
 """

@@ -1,24 +1,29 @@
 """The part of the bridge's step that speaks ROS4HRI: people as bodies and persons, their gestures and intents."""
 
 from collections.abc import Iterable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from actum.arrays import Array
 from actum.bridge import ForeignTopic, Output
+from actum.installing import adding
 from actum.messages import Agent, Event, Image, Skeleton
 from actum.node import SECOND_NS, Counters
+from actum.settings import SettingsError
 from ros2_bridge.frames import header
-from ros2_bridge.hri import converting
 from ros2_bridge.hri import types as hri
-from ros2_bridge.hri.announcing import Announcing
-from ros2_bridge.hri.body import body_of
-from ros2_bridge.hri.camera import Camera, UnusableCameraError
-from ros2_bridge.hri.mapping import load
-from ros2_bridge.hri.posture import posture_of
-from ros2_bridge.hri.present import Human, Present
+from ros2_bridge.hri_out import converting
+from ros2_bridge.hri_out.announcing import Announcing
+from ros2_bridge.hri_out.body import body_of
+from ros2_bridge.hri_out.camera import Camera, UnusableCameraError
+from ros2_bridge.hri_out.mapping import load
+from ros2_bridge.hri_out.posture import posture_of
+from ros2_bridge.hri_out.present import Human, Present
 from ros2_bridge.message_types import STRING, TF_MESSAGE, made
 from ros2_bridge.settings import Settings
 from ros2_bridge.topics import BODIES_TRACKED, CANDIDATE_MATCHES, INTENTS, PERSONS_TRACKED, TF
+
+if TYPE_CHECKING:
+    from ros2_bridge.hri_out.cropping import Cropper
 
 REPEAT_NS = SECOND_NS
 """How often (ns) what seldom changes is published again, for nodes that came later."""
@@ -39,6 +44,7 @@ class Humans:
         self._present = Present()
         self._topics = Announcing(settings)
         self._camera: Camera | None = None
+        self._cropper = _cropper(settings, counters)
         self._postures: dict[Human, int] = {}
         self._now_ns = self._repeated_ns = self._stamp_ns = 0
         self._is_wanted = bool({"bodies", "body_links", "persons", "intents"} & settings.chosen_topics)
@@ -70,6 +76,8 @@ class Humans:
             for human in self._present.humans:
                 yield from self._topics.announce(human.topics_of_image())
         self._camera = camera
+        if self._cropper is not None:
+            self._cropper.take(image)
 
     def see(self, message: Skeleton, joints: Iterable[Array]) -> Iterator[Output]:
         """Publish everybody of a skeleton message; `joints` are each agent's, (15, 3), NaN where unknown."""
@@ -142,7 +150,9 @@ class Humans:
     def _seen(self, of: Any, agent: Agent, joints: Array, message: Skeleton, placed: list[Any]) -> Iterator[Output]:
         """Publish one person; the transforms are added to `placed`."""
         human = self._present.of(agent.agent, message.session_id)
-        assert human is not None
+        if human is None:
+            self._counters.counts["one person too many, left out of /humans"] += 1
+            return
         chosen, on = self._settings.chosen_topics, self._topics.on
         body = body_of(joints)
         if body is not None:
@@ -155,4 +165,24 @@ class Humans:
         if self._camera is not None:
             seen = self._camera.seen(joints, agent.confidence)
             yield from on(human.body_topic("skeleton2d"), seen.skeleton_2d(of))
-            yield from on(human.body_topic("roi"), seen.region(of))
+            region = seen.region(of)
+            yield from on(human.body_topic("roi"), region)
+            if self._cropper is not None:
+                yield from on(human.body_topic("cropped"), self._cropper.cut(of, message.stamp_ns, region))
+
+
+def _cropper(settings: Settings, counters: Counters) -> "Cropper | None":
+    """Return what cuts people out of images, if that is chosen.
+
+    Raises:
+        SettingsError: OpenCV or imagesize is not installed.
+    """
+    if "cropped" not in settings.chosen_topics:
+        return None
+    try:
+        from ros2_bridge.hri_out.cropping import Cropper  # an installation for ROS 2 lacks OpenCV
+    except ModuleNotFoundError as error:
+        raise SettingsError(
+            f"ros_topics: the topic cropped needs {error.name}, which is not installed: {adding('marker-tracker')}"
+        ) from None
+    return Cropper(counters)

@@ -1,4 +1,7 @@
-"""Decode image messages to grey levels; refuse unusable images before memory is allocated for them."""
+"""Decode image messages; refuse unusable images before memory is allocated for them.
+
+Needs OpenCV and imagesize, which the extra `marker-tracker` brings.
+"""
 
 import io
 import struct
@@ -12,7 +15,7 @@ from actum.messages import Image
 from actum.pictures import MOST_SCANS, has_too_many_scans, is_black
 
 LARGEST_PIXELS = 4096 * 4096
-"""Pixels of an image: 16 MB of grey levels, several times what a colour camera gives."""
+"""Pixels of an image: several times what a colour camera gives."""
 JPEG_START = b"\xff\xd8"
 """The bytes that begin every JPEG: the marker "start of image"."""
 
@@ -32,13 +35,31 @@ def gray(image: Image) -> Pixels:
     Raises:
         UnusableImageError: of kind `image_too_large`, `image_size_mismatch` or `undecodable_image`.
     """
+    if image.format == "jpeg":
+        return _from_jpeg(image, cv2.IMREAD_GRAYSCALE)
+    return cv2.cvtColor(_raw(image), cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
+
+
+def colour(image: Image) -> Pixels:
+    """Decode an image message to blue, green and red levels (height, width, 3).
+
+    Raises:
+        UnusableImageError: as `gray`.
+    """
+    return _from_jpeg(image, cv2.IMREAD_COLOR) if image.format == "jpeg" else _raw(image)
+
+
+def _refuse_large(image: Image) -> None:
     if image.width * image.height > LARGEST_PIXELS:
         raise UnusableImageError(
             "image_too_large",
             f"the image has {image.width}x{image.height} pixels; at most {LARGEST_PIXELS} pixels in all are allowed",
         )
-    if image.format == "jpeg":
-        return _from_jpeg(image)
+
+
+def _raw(image: Image) -> Pixels:
+    """Return the pixels (height, width, 3) of an image in the format bgr8."""
+    _refuse_large(image)
     expected = image.width * image.height * 3
     if len(image.data) != expected:
         raise UnusableImageError(
@@ -46,8 +67,7 @@ def gray(image: Image) -> Pixels:
             f"the image has {len(image.data)} bytes; {image.width}x{image.height} pixels in the format bgr8 need "
             f"{expected} bytes",
         )
-    pixels = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
-    return cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
+    return np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
 
 
 def refuse_black(pixels: Pixels) -> None:
@@ -60,8 +80,9 @@ def refuse_black(pixels: Pixels) -> None:
         raise UnusableImageError("black_image", "the image is black: uncover the lens, or switch on the light")
 
 
-def _from_jpeg(image: Image) -> Pixels:
+def _from_jpeg(image: Image, flags: int) -> Pixels:
     """Decode a JPEG after its header has been checked: decoding allocates as much as the header claims."""
+    _refuse_large(image)
     size = _jpeg_size(image.data)
     if size[0] * size[1] > LARGEST_PIXELS:
         raise UnusableImageError(
@@ -78,9 +99,8 @@ def _from_jpeg(image: Image) -> Pixels:
         raise UnusableImageError(
             "image_too_large", f"the JPEG has more than {MOST_SCANS} scans: send a JPEG that is not progressive"
         )
-    flags = cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
-    pixels = cv2.imdecode(np.frombuffer(image.data, dtype=np.uint8), flags)
-    if pixels is None or pixels.shape != (image.height, image.width):
+    pixels = cv2.imdecode(np.frombuffer(image.data, dtype=np.uint8), flags | cv2.IMREAD_IGNORE_ORIENTATION)
+    if pixels is None or pixels.shape[:2] != (image.height, image.width):
         raise UnusableImageError(
             "undecodable_image", f"the JPEG of {len(image.data)} bytes is damaged and cannot be decoded"
         )
