@@ -2,8 +2,10 @@
 
 import math
 
+import numpy as np
 import pytest
 
+from human_model import poses
 from ros2_bridge.hri_in.human_model import (
     FOREARM_M,
     HEAD_RADIUS_M,
@@ -32,6 +34,15 @@ def test_the_model_has_the_twenty_joints_that_detectors_publish() -> None:
     arms = {f"{side}_{joint}" for side in "lr" for joint in ("y_shoulder", "p_shoulder", "r_shoulder", "elbow")}
     legs = {f"{side}_{joint}" for side in "lr" for joint in ("y_hip", "p_hip", "r_hip", "knee")}
     assert {*UPRIGHT} == head | arms | legs
+
+
+def test_links_lie_where_another_reading_of_the_model_has_them() -> None:
+    rng = np.random.default_rng(0)
+    for _ in range(50):
+        angles = {joint: float(angle) for joint, angle in zip(UPRIGHT, rng.uniform(-2, 2, len(UPRIGHT)), strict=True)}
+        ours, theirs = link_places(angles), poses(angles)
+        for link in theirs:
+            assert np.array(ours[link]) / FOREARM_M == pytest.approx(theirs[link][:3, 3]), link
 
 
 def test_without_angles_a_body_stands_with_hanging_arms() -> None:
