@@ -149,3 +149,24 @@ def test_a_late_body_and_a_stamp_between_frames_do_no_harm(
     stamps = [it.stamp_ns for it in late]
     assert stamps == sorted(stamps)
     assert np.all(np.diff(stamps) > 0)
+
+
+def test_people_of_one_sensor_go_over_ros_to_another_sensor(running: System) -> None:
+    running.start_router()
+    with running.client() as client, running.client(sensor="robot") as robot:
+        seen = client.listen(keys.pattern(keys.SKELETON, "kinect0"))
+        came = robot.listen(keys.pattern(keys.SKELETON, "robot"))
+        running.start("ros2_bridge")
+        running.start("ros2_bridge", "--sensor", "robot", "--ros-bodies", "--ros-frame-id", "kinect0_optical_frame")
+        running.wait_for_services(client, "ros2_bridge")
+        running.wait_for_services(robot, "ros2_bridge")
+        running.start("scene_simulator")
+        found = collect(came, Skeleton, lambda them: sum(bool(it.agents) for it in them) >= 30)
+        sent = {it.stamp_ns: it for it in collect(seen, Skeleton, bool)}
+        while (received := seen.receive()) is not None:
+            if isinstance(received.message, Skeleton):
+                sent[received.message.stamp_ns] = received.message
+    for skeleton in (it for it in found if it.agents):
+        theirs, ours = (it.agents[0].joints for it in (sent[skeleton.stamp_ns], skeleton))
+        np.testing.assert_allclose(np.array(ours), np.array(theirs), atol=1e-5)
+        assert skeleton.up_in_camera == pytest.approx([0, -1, 0], abs=1e-6)
