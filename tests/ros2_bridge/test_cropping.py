@@ -73,6 +73,11 @@ def test_people_are_cut_out_only_where_that_is_chosen() -> None:
     assert not any(topic.endswith("/cropped") for topic in room.declared)
 
 
+def test_images_of_people_can_be_all_that_is_chosen() -> None:
+    room = Room(ros_topics="cropped").handle(picture(), skeleton(AT_NS, STANDING))
+    assert [topic.rpartition("/")[2] for topic in room.said] == ["cropped"]
+
+
 def test_without_opencv_it_is_refused_with_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cv2", None)
     for module in ("actum.images", "ros2_bridge.hri_out.cropping"):

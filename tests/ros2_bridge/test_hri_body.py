@@ -92,7 +92,18 @@ def standing() -> Body:
     return body
 
 
+def leaning() -> np.ndarray:
+    """Who stands with the torso 6 cm beside the middle of the hips."""
+    joints = STANDING.copy()
+    joints[INDEX["torso"], 0] += 0.06
+    return joints
+
+
 def test_the_bodys_frame_lies_between_the_hips_with_x_ahead_and_z_to_the_head() -> None:
+    aside = body_of(leaning())
+    assert aside is not None
+    middle = (STANDING[INDEX["left_hip"]] + STANDING[INDEX["right_hip"]]) / 2
+    assert aside.optical_from_body[:3, 3] == pytest.approx(middle)
     placed = standing().optical_from_body
     assert placed[:3, 3] == pytest.approx((STANDING[INDEX["left_hip"]] + STANDING[INDEX["right_hip"]]) / 2)
     assert placed[:3, 0] == pytest.approx([0, 0, -1], abs=0.05)
@@ -100,11 +111,13 @@ def test_the_bodys_frame_lies_between_the_hips_with_x_ahead_and_z_to_the_head() 
 
 
 def test_each_link_lies_at_its_joint_in_the_bodys_frame() -> None:
-    body = standing()
+    joints = leaning()
+    body = body_of(joints)
+    assert body is not None
     assert body.links.keys() == LINKS.keys()
     for link, joint in LINKS.items():
         placed = body.optical_from_body @ [*body.links[link][0], 1]
-        assert placed[:3] == pytest.approx(STANDING[INDEX[joint]])
+        assert placed[:3] == pytest.approx(joints[INDEX[joint]])
 
 
 def test_each_link_is_turned_as_the_models() -> None:

@@ -12,8 +12,12 @@ pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 from actum.messages import MOST_AGENTS
 from humans import NEAR, Room, image
 from people import STANDING, lacking, skeleton, turned
+from ros2_bridge.hri import types as hri
+from ros2_bridge.hri_out.announcing import Announcing
 from ros2_bridge.hri_out.body import LINKS, body_of
-from ros2_bridge.topics import PUBLISHED
+from ros2_bridge.message_types import made
+from ros2_bridge.settings import Settings
+from ros2_bridge.topics import PUBLISHED, RosTopic
 
 AT_NS = 7_000_000_008
 BODY_TOPICS = {"joint_states", "posture", "roi", "skeleton2d"}
@@ -61,6 +65,16 @@ def test_numbers_that_change_with_each_frame_do_not_open_topics_without_end() ->
     assert len(room.bodies) == MOST_AGENTS
     assert room.bridge.counters.counts == {"one person too many, left out of /humans": 3 * 40 - MOST_AGENTS}
     assert room.wait(2).bodies == []
+
+
+def test_what_is_withdrawn_is_put_on_no_longer() -> None:
+    topic = RosTopic("/humans/persons/a/anonymous", hri.BOOL, "persons")
+    announcing = Announcing(Settings())
+    assert [it.name for it in announcing.announce([topic])] == [topic.name]
+    assert list(announcing.announce([topic])) == []
+    assert [it.topic for it in announcing.on(topic.name, made(hri.BOOL))] == [topic.name]
+    assert [it.topic for it in announcing.withdraw([topic])] == [topic.name]
+    assert list(announcing.on(topic.name, made(hri.BOOL))) == list(announcing.withdraw([topic])) == []
 
 
 def test_people_whose_sensor_falls_silent_go_too() -> None:

@@ -41,10 +41,6 @@ class Announcing:
                 self._announced.remove(topic.name)
                 yield Withdrawn(topic.name)
 
-    def has(self, name: str) -> bool:
-        """Tell whether a topic is published now."""
-        return name in self._announced
-
     def on(self, name: str, message: Any | None) -> Iterator[Foreign]:
         """Yield the payload of a message, none where its topic is not published or there is no message."""
         if message is not None and name in self._announced:

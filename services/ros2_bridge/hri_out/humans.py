@@ -47,7 +47,7 @@ class Humans:
         self._cropper = _cropper(settings, counters)
         self._postures: dict[Human, int] = {}
         self._now_ns = self._repeated_ns = self._stamp_ns = 0
-        self._is_wanted = bool({"bodies", "body_links", "persons", "intents"} & settings.chosen_topics)
+        self._is_wanted = bool({"bodies", "body_links", "cropped", "persons", "intents"} & settings.chosen_topics)
 
     def begin(self, session_id: str, lasting: Iterable[ForeignTopic]) -> None:
         """Begin anew in a Zenoh session in which the lasting topics are published: nobody is there."""

@@ -28,8 +28,6 @@ CROUCHED_KNEE_DEG = 80.0
 """Least bend of the knees (degrees) of who crouches."""
 LOW_HIPS = 0.6
 """Most height of the hips above the feet, in lengths of the shank, of who crouches; seats are higher."""
-HIGHEST_SEAT = 1.75
-"""Most of that height of who sits; of the same people it is 1.4 to 1.7. Of who stands it is 1.9."""
 
 _LEGS = [tuple(INDEX[f"{side}_{joint}"] for joint in ("hip", "knee", "foot")) for side in ("left", "right")]
 """Indices of hip, knee and foot, left and right."""
@@ -63,7 +61,7 @@ def _named(trunk: Vector, thigh: Vector, shank: Vector, up: Vector) -> int:
         return STANDING
     if bend >= CROUCHED_KNEE_DEG and hips < LOW_HIPS:
         return CROUCHING
-    if tilt <= UPRIGHT_DEG and hanging >= SEATED_THIGH_DEG and LOW_HIPS <= hips <= HIGHEST_SEAT:
+    if tilt <= UPRIGHT_DEG and hanging >= SEATED_THIGH_DEG and hips >= LOW_HIPS:
         return SITTING
     return OTHER
 
