@@ -110,9 +110,9 @@ class SkeletonAssembler:
     def _up_in_camera(self, stamp_ns: int) -> list[float] | None:
         """Return the z axis of the root of the camera's tree, which points up (REP 103); None where it has none."""
         root, camera = self.tree.top(self._optical_frame, stamp_ns)
-        return (
-            None if OPTICAL in root or root == self._optical_frame else list(rotated(camera.inverse().xyzw, (0, 0, 1)))
-        )
+        if OPTICAL in root or root == self._optical_frame:
+            return None
+        return list(rotated(camera.inverse().xyzw, (0, 0, 1)))
 
     def _body(self, body_id: str) -> Body:
         """Return a body that has just come, with its number of earlier or a new one."""
