@@ -12,13 +12,11 @@ from actum.settings import ServiceSettings, host_and_port
 from actum_command.processes import simulated_objects
 from actum_deployer.deployment import Deployment
 from actum_deployer.hosts import hosts_of
-from actum_deployer.roles import PEOPLES, ROLES, Role, identity
+from actum_deployer.roles import PEOPLES, identity
 from actum_deployer.writing import write_deployment
 from live import PATIENCE_S, Running, free_endpoint, started, wait_until
 
 PEOPLE = {role.name for role in PEOPLES}
-BY_SERVICE = {service: role for role in ROLES for service in role.services}
-"""The role of each service."""
 MODULES = {"scene_simulator": "sensor_gateway"}
 """The service's name of each program that has another."""
 ROUTER = ("-m", "actum_command", "router")
@@ -65,7 +63,8 @@ class Deployed:
 
     def start(self, module: str, host: str, *arguments: str, sensor: str = "kinect0") -> Running:
         """Start a service with the credentials of its role, for a sensor or for several, such as `left,right`."""
-        role: Role = BY_SERVICE[MODULES.get(module, module)]
+        service = MODULES.get(module, module)
+        role = next(each for each, _ in self.deployment.subjects if service in each.services)
         return self._start(module, self.environment(identity(role, sensor), host, sensor), "-m", module, *arguments)
 
     def start_router(self, host: str) -> Running:

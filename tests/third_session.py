@@ -6,11 +6,12 @@ import zenoh
 
 from actum import keys
 from actum.runtime import Listening
-from deployments import BY_SERVICE, Deployed
+from actum_deployer.roles import ROLES
+from deployments import Deployed
 from empty_messages import skeleton
 from live import PATIENCE_S, wait_until
 
-SERVICE_OF = {role.name: service for service, role in BY_SERVICE.items()}
+SERVICE_OF = {role.name: service for role in ROLES for service in role.services}
 
 
 def passed_on(session: zenoh.Session, who: str) -> None:

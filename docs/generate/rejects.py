@@ -247,6 +247,27 @@ OF_BRIDGE: Mapping[str, Problem] = {
         "A stamp is after January 2038, the last that ROS 2 can represent; the message is not published to ROS 2.",
         "Stamp in nanoseconds since 1970, or since the sensor started.",
     ),
+    "bad_body_message": Problem(
+        "A message about bodies from ROS 2 is longer than 250 kB or not of its topic's type.",
+        "Use the message types of `hri_msgs` 2.3.2 and of the ROS 2 distribution in `--ros-distro`.",
+    ),
+    "bad_body_id": Problem(
+        "`/humans/bodies/tracked` contains an id that no ROS 2 topic can have; this body is left out.",
+        "Use letters, digits and underscores, at most 64 of them.",
+    ),
+    "too_many_bodies": Problem(
+        "`/humans/bodies/tracked` contains more than 64 bodies; the first 64 are used.",
+        "Check the body detector.",
+    ),
+    "bad_body_stamp": Problem(
+        "A transform, or a message about bodies, has no stamp; it is not used.",
+        "Set `header.stamp` to the time at which the image was captured.",
+    ),
+    "bad_transform": Problem(
+        "A transform has a number that is not finite, a translation of over 1,000 km, or a quaternion whose length is "
+        "not 1; it is not used.",
+        "Correct the node that publishes this frame; the latest error names the frame.",
+    ),
 }
 
 OF_TRAINER: Mapping[str, Problem] = {

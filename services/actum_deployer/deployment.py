@@ -12,7 +12,7 @@ from actum.atomic_file import write_whole
 from actum.keys import InvalidKeyError, chunk
 from actum.settings import SettingsError
 from actum_deployer.hosts import KINDS, STRICT, Host, host_of
-from actum_deployer.roles import PEOPLES, Role, common_name, identity
+from actum_deployer.roles import BODIES_BRIDGE, BRIDGE, DETECTOR, PEOPLES, Role, common_name, identity
 
 ROUTERS_CANNOT = (
     "A router's credentials cannot be revoked, because clients would still trust them. To replace a router's "
@@ -36,6 +36,8 @@ class Deployment:
         simulated: whether the simulated scene stands in the place of cameras.
         revoked: how often the credentials of an identity were revoked.
         ros_domain: the domain of the bridge to ROS 2; None where there is none.
+        ros_bodies: the optical frame, in the robot's tree, of the camera whose bodies the bridge publishes as the
+            skeletons of the only sensor, in place of a gateway; None where there is a gateway.
     """
 
     __pydantic_config__ = STRICT
@@ -47,6 +49,7 @@ class Deployment:
     simulated: bool = False
     revoked: Mapping[str, int] = field(default_factory=dict)
     ros_domain: int | None = None
+    ros_bodies: str | None = None
 
     @property
     def routers(self) -> tuple[Host, ...]:
@@ -75,7 +78,9 @@ class Deployment:
         return [(role, its) for role in roles for its in (together if role.serves_several else host.sensors)]
 
     def _taking_part(self, roles: Iterable[Role]) -> tuple[Role, ...]:
-        return tuple(role for role in roles if self.ros_domain is not None or not role.speaks_ros)
+        absent = (BODIES_BRIDGE, DETECTOR) if self.ros_bodies is None else (BRIDGE,)
+        spoken = (role for role in roles if self.ros_domain is not None or not role.speaks_ros)
+        return tuple(role for role in spoken if role not in absent)
 
     @property
     def transport(self) -> str:

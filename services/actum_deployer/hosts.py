@@ -8,7 +8,17 @@ from pydantic import ConfigDict
 
 from actum.keys import chunk
 from actum.settings import HIGHEST_PORT, SettingsError
-from actum_deployer.roles import BRIDGE, CLASSIFIER, FUSION, GATEWAY, PAGE, PREPROCESSOR, TRACKER, TRAINER
+from actum_deployer.roles import (
+    BODIES_BRIDGE,
+    BRIDGE,
+    CLASSIFIER,
+    FUSION,
+    GATEWAY,
+    PAGE,
+    PREPROCESSOR,
+    TRACKER,
+    TRAINER,
+)
 
 DEFAULT_PORT = 7447
 """Zenoh's usual port."""
@@ -20,7 +30,7 @@ NUMERIC = re.compile(r"(.*\.)?[0-9]+")
 """What is no name but an address of IPv4, or none that can be: its last label is a number."""
 KINDS = {
     "camera": (GATEWAY, TRACKER),
-    "compute": (PREPROCESSOR, CLASSIFIER, FUSION, TRAINER, PAGE, BRIDGE),
+    "compute": (PREPROCESSOR, CLASSIFIER, FUSION, TRAINER, PAGE, BRIDGE, BODIES_BRIDGE),
 }
 """The roles of the services on each kind of host, by the beginning of the host's name."""
 STRICT = ConfigDict(extra="forbid")

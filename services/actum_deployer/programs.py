@@ -7,7 +7,18 @@ from actum.settings import PROCESS_ENVIRONMENT
 from actum_deployer.credential_folders import CREDENTIALS
 from actum_deployer.deployment import Deployment
 from actum_deployer.hosts import Host
-from actum_deployer.roles import BRIDGE, CLASSIFIER, FUSION, GATEWAY, PAGE, ROUTER, TRAINER, Role, identity
+from actum_deployer.roles import (
+    BODIES_BRIDGE,
+    BRIDGE,
+    CLASSIFIER,
+    FUSION,
+    GATEWAY,
+    PAGE,
+    ROUTER,
+    TRAINER,
+    Role,
+    identity,
+)
 
 INSTALLED = "/etc/actum"
 """Where a host's folder is found, in containers and by systemd."""
@@ -71,11 +82,13 @@ class Program:
 
 
 def programs(deployment: Deployment, host: Host) -> Iterator[Program]:
-    """Yield what runs on a host, the router first."""
+    """Yield what runs on a host, the router first. Where bodies come from ROS 2, no gateway publishes skeletons."""
     if host in deployment.routers:
         credentials = f"{INSTALLED}/{CREDENTIALS}/{ROUTER}" if deployment.secured else ""
         yield Program(ROUTER, "the router", "actum_command", COMMAND_IMAGE, None, "", credentials)
     for role, sensor in deployment.roles_of(host):
+        if role is GATEWAY and deployment.ros_bodies is not None:
+            continue
         yield _program(deployment, host, role, sensor)
 
 
@@ -92,8 +105,10 @@ def environment(deployment: Deployment, host: Host, program: Program, own_router
         own["ACTUM_TRAINER_DATA"] = f"{data.models}/teaching"
     if program.role in STATEFUL:
         own["ACTUM_STATE"] = data.state
-    if program.role is BRIDGE:
+    if program.role in (BRIDGE, BODIES_BRIDGE):
         own["ACTUM_ROS_DOMAIN_ID"] = str(deployment.ros_domain)
+    if program.role is BODIES_BRIDGE and deployment.ros_bodies is not None:
+        own |= {"ACTUM_ROS_BODIES": "true", "ACTUM_ROS_FRAME_ID": deployment.ros_bodies}
     if program.page_port:
         own["ACTUM_PAGE_PORT"] = str(program.page_port)
     return own

@@ -60,6 +60,8 @@ ROS_TOPICS = (
 """
 ROS_MARKS = (f"{BASE}/{{}}/mark",)
 """What it subscribes to."""
+ROS_BODIES = ("humans/bodies", "tf", "tf_static")
+"""What it also subscribes to where the bodies that ROS 2 nodes track become skeletons; it publishes there, too."""
 GATEWAY = Role(
     "gateway",
     "a sensor's gateway, or the simulated scene",
@@ -124,11 +126,26 @@ BRIDGE = Role(
     ros_puts=ROS_TOPICS,
     ros_reads=ROS_MARKS,
 )
+BODIES_BRIDGE = Role(
+    "ros2_bodies",
+    "the bridge to ROS 2 that also publishes as skeletons the bodies that ROS 2 nodes track",
+    services=BRIDGE.services,
+    puts=(*BRIDGE.puts, keys.SKELETON),
+    reads=BRIDGE.reads,
+    ros_puts=BRIDGE.ros_puts,
+    ros_reads=(*BRIDGE.ros_reads, *ROS_BODIES),
+)
 ROBOT = Role(
     "robot",
     "ROS 2 nodes or their router, which read the bridge's topics and publish marks",
     ros_puts=ROS_MARKS,
     ros_reads=ROS_TOPICS,
+)
+DETECTOR = Role(
+    "detector",
+    "ROS 2 nodes or their router, which also publish bodies and transforms for the bridge",
+    ros_puts=(*ROBOT.ros_puts, *ROS_BODIES),
+    ros_reads=ROBOT.ros_reads,
 )
 SWITCH = Role(
     "switch",
@@ -151,7 +168,10 @@ RECORDER = Role(
     inspects=True,
 )
 
-ROLES = (GATEWAY, PREPROCESSOR, CLASSIFIER, TRACKER, FUSION, TRAINER, PAGE, BRIDGE, SWITCH, VIEWER, RECORDER, ROBOT)
+ROLES = (
+    *(GATEWAY, PREPROCESSOR, CLASSIFIER, TRACKER, FUSION, TRAINER, PAGE, BRIDGE, BODIES_BRIDGE),
+    *(SWITCH, VIEWER, RECORDER, ROBOT, DETECTOR),
+)
 """Every role but that of routers, which pass on what others may put."""
 PEOPLES = tuple(role for role in ROLES if not role.services)
 """The roles of people's programs, such as `actum watch`."""

@@ -1,4 +1,4 @@
-"""The bridge's pure step: messages of ours become ROS 2's, and marks from ROS 2 become segments."""
+"""The bridge's pure step: messages of ours become ROS 2's; marks from ROS 2 become segments, and bodies skeletons."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -13,6 +13,7 @@ from actum.messages import Agent, Event, Image, Intent, Message, Objects, Skelet
 from actum.node import Counters, Tick
 from actum.skeletons import JOINTS
 from ros2_bridge import conversion, frames, topics
+from ros2_bridge.hri_in.body_reader import BodyReader
 from ros2_bridge.hri_out.humans import Humans
 from ros2_bridge.marks import BadMarkError, segment_of
 from ros2_bridge.message_types import to_cdr
@@ -21,7 +22,7 @@ from ros2_bridge.topics import RosTopic
 
 
 class Ros2Bridge:
-    """Republishes skeletons, objects, events and intents on ROS 2 topics, and takes marks from one.
+    """Republishes skeletons, objects, events and intents on ROS 2 topics, and takes marks and bodies from others.
 
     Of images only the camera is used, to say where bodies are in them.
 
@@ -33,16 +34,19 @@ class Ros2Bridge:
 
     def __init__(self, settings: Settings) -> None:
         self.inputs: tuple[keys.Topic, ...] = (keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT)
-        if {"bodies", "cropped"} & settings.ros_topics:
+        if {"bodies", "cropped"} & settings.chosen_topics:
             self.inputs += (keys.COLOR,)
         self.counters = Counters()
         self._settings = settings
         self._humans = Humans(settings, self.counters)
         # with ros_frame_id the frames are the robot's, and the robot publishes where they lie
         self._camera_published = settings.ros_frame_id is not None
+        self._bodies = BodyReader(settings.sensor, settings.frame_id, self.counters) if settings.ros_bodies else None
 
     def foreign_node(self, session_id: str) -> ForeignNode:
         """Return the ROS 2 node that the bridge is in the Zenoh session of this id."""
+        if self._bodies is not None:
+            self._bodies.begin(f"ros2-{session_id}")
         node = topics.node(self._settings, session_id)
         self._humans.begin(session_id, node.publishes)
         return node
@@ -50,6 +54,8 @@ class Ros2Bridge:
     def handle(self, message: Message | Tick) -> Iterable[Output]:
         """Turn a message into one for each of its topics that is chosen; the first tick says how the camera lies."""
         if isinstance(message, Tick):
+            if self._bodies is not None:
+                self._bodies.tick(message)
             return [*self._camera(), *self._humans.tick(message.monotonic_ns)]
         if isinstance(message, Image):
             return [*self._humans.look(message)]
@@ -64,7 +70,9 @@ class Ros2Bridge:
         return []
 
     def receive(self, foreign: Foreign) -> Iterable[Message]:
-        """Turn a mark into a segment."""
+        """Turn a mark into a segment, and bodies into skeletons."""
+        if self._bodies is not None and foreign.topic != topics.MARK.name:
+            return self._bodies.receive(foreign)
         try:
             mark = segment_of(foreign.payload, self._settings.sensor)
         except BadMarkError as error:
@@ -98,7 +106,7 @@ class Ros2Bridge:
 
     def _on(self, topic: RosTopic, convert: Callable[..., Any], *given: Any) -> list[Foreign]:
         """Return what is converted for a topic; nothing where that is not chosen."""
-        if topic.chosen_by not in self._settings.ros_topics:
+        if topic.chosen_by not in self._settings.chosen_topics:
             return []
         return [Foreign(topic.name, to_cdr(convert(*given, self._settings.frame_id)))]
 

@@ -129,41 +129,47 @@ def _detection(of: Any, item: TrackedObject) -> Any:
 
 def action_event(event: Event, frame_id: str) -> Any:
     """Return an ActionEvent; a text that is not known is empty."""
-    texts = {name: getattr(event, name) or "" for name in ("reason", "hand", "action", "outcome", "result", "why")}
+    texts = {name: getattr(event, name) or "" for name in ("reason", "hand", "action", "outcome", "why", "result")}
     return made(
         ACTION_EVENT,
         header=header(event.stamp_ns, frame_id),
         start=ros_time(event.start_ns),
         end=ros_time(event.end_ns),
+        session_id=event.session_id,
         segment_id=event.segment_id,
         valid=event.valid,
         agent=event.agent,
         confidence=event.confidence,
         unknown=event.unknown,
+        candidate_ids=[str(each.id) for each in event.candidates],
         held_id=str(event.held.id) if event.held else "",
+        held_name=event.held.name if event.held else "",
         displacement_known=event.motion is not None,
         displacement=vector(event.motion.displacement_m if event.motion else (0, 0, 0)),
-        sentence=event.sentence,
+        direction=event.motion.direction or "" if event.motion else "",
         agreement_known=event.agrees is not None,
         agrees=bool(event.agrees),
-        candidate_ids=[str(each.id) for each in event.candidates],
+        sentence=event.sentence,
         **texts,
         **(_acted_on(event.object) if event.object else {}),
     )
 
 
 def _acted_on(item: ActedObject) -> dict[str, Any]:
-    fields = {
+    fields: dict[str, Any] = {
         "object_id": str(item.id),
         "object_name": item.name,
         "taken_along": item.taken_along,
         "in_hand_at_end": item.in_hand_at_end,
     }
-    if item.pose is None:
-        return fields
-    turned = item.pose.quaternion_xyzw
-    placed = pose(item.pose.position_m, turned)
-    return {**fields, "position_known": True, "orientation_known": turned is not None, "object_pose": placed}
+    if item.pose is not None:
+        turned = item.pose.quaternion_xyzw
+        fields |= {"position_known": True, "orientation_known": turned is not None}
+        fields["object_pose"] = pose(item.pose.position_m, turned)
+    if item.fixed_pose is not None:
+        fields["fixed_frame"] = item.fixed_pose.frame
+        fields["fixed_pose"] = pose(item.fixed_pose.position_m, item.fixed_pose.quaternion_xyzw)
+    return fields
 
 
 def event_json(event: Event, _frame_id: str) -> Any:

@@ -74,8 +74,17 @@ def text_of(payload: bytes) -> str:
     Raises:
         NotThatTypeError: they are none.
     """
+    return str(from_cdr(payload, STRING).data)
+
+
+def from_cdr(payload: bytes, name: str) -> Any:
+    """Return the message of a type that bytes hold.
+
+    Raises:
+        NotThatTypeError: they hold none.
+    """
     try:
-        return str(_store().deserialize_cdr(payload, STRING).data)
+        return _store().deserialize_cdr(payload, name)
     except SerdeError as error:
         raise NotThatTypeError(str(error)) from None
 

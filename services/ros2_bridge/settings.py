@@ -16,6 +16,10 @@ TopicName = Literal[
 """What can be published and, of `mark`, subscribed to. The last five are ROS4HRI's."""
 UNLESS_CHOSEN: frozenset[TopicName] = frozenset(get_args(TopicName)) - {"cropped"}
 """What is exchanged unless topics are chosen: all but pictures of people."""
+OF_BODIES: frozenset[TopicName] = frozenset(("bodies", "body_links", "cropped", "persons"))
+"""The words for topics on which the bridge describes bodies."""
+OTHERS: Literal["others"] = "others"
+"""The word for the topics on which other nodes describe bodies, which `ros_bodies` chooses."""
 ROS_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*")
 """The characters of ROS 2's names, without the slash before them."""
 HIGHEST_DOMAIN = 232
@@ -65,6 +69,14 @@ class Settings(ServiceSettings):
         ),
     )
 
+    ros_bodies: bool = Field(
+        False,
+        description=(
+            "read the bodies that other ROS 2 nodes track (ROS4HRI: /humans/bodies, /tf) and publish them as this "
+            "sensor's skeletons, in place of a sensor gateway; requires --ros-frame-id"
+        ),
+    )
+
     @field_validator("ros_namespace")
     @classmethod
     def _without_slashes(cls, namespace: str | None) -> str | None:
@@ -78,6 +90,20 @@ class Settings(ServiceSettings):
                 "that do not begin with a digit, such as lab/kinect0"
             )
         return self
+
+    @model_validator(mode="after")
+    def _says_in_which_frame_bodies_are(self) -> "Settings":
+        if self.ros_bodies and self.ros_frame_id is None:
+            raise ValueError(
+                "--ros-bodies needs --ros-frame-id: give the name of the optical frame of the camera that sees the "
+                "bodies, as your robot's tf tree has it, such as camera_color_optical_frame"
+            )
+        return self
+
+    @property
+    def chosen_topics(self) -> frozenset[str]:
+        """The words for the topics to exchange with ROS 2: whoever reads others' bodies does not publish them again."""
+        return self.ros_topics - OF_BODIES | {OTHERS} if self.ros_bodies else self.ros_topics
 
     @property
     def namespace(self) -> str:

@@ -4,11 +4,12 @@ import hashlib
 import struct
 from dataclasses import dataclass
 from functools import partial
+from typing import Literal
 
 from actum.bridge import ForeignNode, ForeignTopic
 from ros2_bridge import message_types as types
 from ros2_bridge.hri import types as hri
-from ros2_bridge.settings import Settings, TopicName
+from ros2_bridge.settings import OTHERS, Settings, TopicName
 
 NODE = "bridge"
 """The name of the bridge's node, in the namespace of its topics."""
@@ -20,12 +21,13 @@ NO_HASH = "TypeHashNotSupported"
 class RosTopic:
     """One row of the table: a topic's name below the namespace, or from the root, its type, and its quality of service.
 
-    All are reliable and keep the last `depth`. `chosen_by` is the setting's word for it; latched is transient local.
+    All are reliable and keep the last `depth`. `chosen_by` is the setting's word for it; latched is transient local. In
+    the name of a topic that each body has, `*` stands for the body's id.
     """
 
     name: str
     type: str
-    chosen_by: TopicName
+    chosen_by: TopicName | Literal["others"]
     depth: int = 10
     latched: bool = False
 
@@ -38,6 +40,11 @@ EVENT = RosTopic("event", types.ACTION_EVENT, "event", depth=1, latched=True)
 EVENT_JSON = RosTopic("event_json", types.STRING, "event_json", depth=1, latched=True)
 INTENT = RosTopic("intent", types.ACTION_INTENT, "intent")
 MARK = RosTopic("mark", types.STRING, "mark")
+OTHERS_TRACKED = RosTopic("/humans/bodies/tracked", hri.IDS_LIST, OTHERS)
+OTHERS_TF = RosTopic("/tf", types.TF_MESSAGE, OTHERS, depth=100)
+OTHERS_TF_STATIC = RosTopic("/tf_static", types.TF_MESSAGE, OTHERS, latched=True)
+OTHERS_JOINT_STATES = RosTopic("/humans/bodies/*/joint_states", hri.JOINT_STATE, OTHERS)
+OTHERS_SKELETON_2D = RosTopic("/humans/bodies/*/skeleton2d", hri.SKELETON_2D, OTHERS)
 BODIES_TRACKED = RosTopic("/humans/bodies/tracked", hri.IDS_LIST, "bodies")
 PERSONS_TRACKED = RosTopic("/humans/persons/tracked", hri.IDS_LIST, "persons")
 CANDIDATE_MATCHES = RosTopic("/humans/candidate_matches", hri.IDS_MATCH, "persons")
@@ -48,13 +55,13 @@ PUBLISHED = (
     *(BODIES_TRACKED, PERSONS_TRACKED, CANDIDATE_MATCHES, INTENTS),
 )
 """Published as long as the bridge runs. Those of one body or person, in `ros2_bridge.hri_out.present`, come and go."""
-SUBSCRIBED = (MARK,)
+SUBSCRIBED = (MARK, OTHERS_TRACKED, OTHERS_TF, OTHERS_TF_STATIC, OTHERS_JOINT_STATES, OTHERS_SKELETON_2D)
 
 
 def node(settings: Settings, session_id: str) -> ForeignNode:
     """Return what the bridge declares in a Zenoh session: a node with the chosen topics."""
     numbered = enumerate((*PUBLISHED, *SUBSCRIBED), 1)
-    chosen = [(number, topic) for number, topic in numbered if topic.chosen_by in settings.ros_topics]
+    chosen = [(number, topic) for number, topic in numbered if topic.chosen_by in settings.chosen_topics]
     return ForeignNode(
         _entity(settings, session_id, 0, "NN"),
         tuple(published(topic, settings, session_id, number) for number, topic in chosen if topic in PUBLISHED),
@@ -87,7 +94,7 @@ def _declared(topic: RosTopic, settings: Settings, entity: str) -> ForeignTopic:
     return ForeignTopic(
         name=topic.name,
         key=f"{settings.ros_domain_id}/{path}/{typed}",
-        token=token,
+        token="" if "*" in path else token,  # a token names one topic
         latched=topic.latched,
         attachment=partial(attachment, gid),
     )

@@ -11,10 +11,14 @@ from actum.node import Servable, Tick
 
 @dataclass(frozen=True)
 class Foreign:
-    """A payload of the other system, by the name that the bridge gives its topic."""
+    """A payload of the other system, by the name that the bridge gives its topic.
+
+    Of one that was received, `key` is its Zenoh key, by which topics are told apart that share a name.
+    """
 
     topic: str
     payload: bytes
+    key: str = ""
 
 
 @dataclass(frozen=True)
@@ -23,8 +27,8 @@ class ForeignTopic:
 
     Attributes:
         name: what the bridge calls it.
-        key: its Zenoh key.
-        token: the liveliness token that tells the other system of this publisher or subscriber.
+        key: its Zenoh key; of what is subscribed to, it may match those of several topics.
+        token: the liveliness token that tells the other system of this publisher or subscriber; empty for none.
         latched: whether a subscriber that comes late gets the newest payload.
         attachment: makes a payload's attachment from its number, from 1, and the time of the put (ns since 1970).
     """

@@ -96,6 +96,8 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
     [
         (("init", "--hosts", "camera=a"), "give camera=ADDRESS and compute=ADDRESS"),
         (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords exclude each other"),
+        (("init", *HOSTS, "--ros-bodies", "camera"), "--ros-bodies needs --ros2 and a single camera host"),
+        (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "camera", "--simulate"), "excludes --simulate"),
         (("rotate",), "contains no deployment.json"),
     ],
 )

@@ -1,6 +1,7 @@
 """The table of roles allows each service what it does, and nobody what is another's."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import pytest
 import zenoh
@@ -14,7 +15,21 @@ from actum_command.service_settings import SETTINGS
 from actum_deployer.access_control import TOLD, access_control, link_rules, rules
 from actum_deployer.deployment import Deployment
 from actum_deployer.hosts import hosts_of
-from actum_deployer.roles import BRIDGE, GATEWAY, IMAGES, PAGE, PEOPLES, ROBOT, ROLES, SWITCH, VIEWER, Role, identity
+from actum_deployer.roles import (
+    BODIES_BRIDGE,
+    BRIDGE,
+    DETECTOR,
+    GATEWAY,
+    IMAGES,
+    PAGE,
+    PEOPLES,
+    ROBOT,
+    ROLES,
+    SWITCH,
+    VIEWER,
+    Role,
+    identity,
+)
 from conftest import NEEDS_ROS2_EXTRA
 from marker_tracker.node import MarkerTracker
 from model_trainer.trainer import ModelTrainer
@@ -25,8 +40,19 @@ from web_dashboard.node import WebDashboard
 
 BY_SERVICE = {service: role for role in ROLES for service in role.services}
 NODES = (PosePreprocessor, SomClassifier, MarkerTracker, ActionFusion, ModelTrainer, WebDashboard)
-EVERYBODY = access_control(Deployment(hosts_of("camera=a,compute=b"), passwords=True, ros_domain=0))
-IDENTITIES = {identity(role, "kinect0") for role in ROLES}
+HOSTS = hosts_of("camera=a,compute=b")
+DEPLOYED = {
+    "with a bridge": (
+        access_control(Deployment(HOSTS, passwords=True, ros_domain=0)),
+        {identity(role, "kinect0") for role in ROLES if role not in (BODIES_BRIDGE, DETECTOR)},
+    ),
+    "with a bridge that reads bodies": (
+        access_control(Deployment(HOSTS, passwords=True, ros_domain=0, ros_bodies="camera_optical_frame")),
+        {identity(role, "kinect0") for role in ROLES if role is not BRIDGE},
+    ),
+}
+"""The access control of deployments with everybody who can take part, and the identities of these."""
+everybody = pytest.mark.parametrize(("section", "identities"), DEPLOYED.values(), ids=DEPLOYED)
 
 
 def allowed(role: Role, flow: str, message: str, ros_domain: int | None = None) -> set[str]:
@@ -54,15 +80,19 @@ def test_a_service_may_put_what_its_node_puts(case: Case) -> None:
 
 
 def test_only_gateways_put_what_is_seen_and_images_go_to_whom_they_concern() -> None:
-    assert {role.name for role in ROLES if {keys.SKELETON, *IMAGES} & {*role.puts}} == {"gateway"}
+    assert {role.name for role in ROLES if {*IMAGES} & {*role.puts}} == {"gateway"}
+    assert {role.name for role in ROLES if keys.SKELETON in role.puts} == {"gateway", "ros2_bodies"}
     assert {role.name for role in ROLES if {*IMAGES} & {*role.reads}} == {
         *("tracker", "page", "recorder"),
-        "ros2",  # takes the camera from them, to say where people are in the image
+        *("ros2", "ros2_bodies"),  # take the camera from them, to say where people are in the image
     }
 
 
 def test_who_marks_is_who_may_switch_and_the_classifier_that_finds() -> None:
-    assert {role.name for role in ROLES if keys.SEGMENT in role.puts} == {"switch", "page", "classifier", "ros2"}
+    assert {role.name for role in ROLES if keys.SEGMENT in role.puts} == {
+        *("switch", "page", "classifier"),
+        *("ros2", "ros2_bodies"),
+    }
 
 
 def test_a_service_speaks_for_its_own_sensor_alone() -> None:
@@ -123,18 +153,26 @@ def test_what_is_received_is_what_is_read(role: Role) -> None:
     assert got == patterns(role.reads, sensor)
 
 
-def test_every_identity_has_a_policy_and_every_rule_is_somebodys() -> None:
-    assert EVERYBODY["default_permission"] == "deny"
-    assert {subject["id"] for subject in EVERYBODY["subjects"]} == {*IDENTITIES, "router.camera", "router.compute"}
-    used = [rule for policy in EVERYBODY["policies"] for rule in policy["rules"]]
-    assert {rule["id"] for rule in EVERYBODY["rules"]} == {*used}
-    assert used.count(TOLD) == len(ROLES)
-    assert {rule["permission"] for rule in EVERYBODY["rules"]} == {"allow"}
+@everybody
+def test_every_identity_has_a_policy_and_every_rule_is_somebodys(section: dict[str, Any], identities: set[str]) -> None:
+    assert section["default_permission"] == "deny"
+    assert {subject["id"] for subject in section["subjects"]} == {*identities, "router.camera", "router.compute"}
+    used = [rule for policy in section["policies"] for rule in policy["rules"]]
+    assert {rule["id"] for rule in section["rules"]} == {*used}
+    assert used.count(TOLD) == len(identities)
+    assert {rule["permission"] for rule in section["rules"]} == {"allow"}
 
 
-def test_people_are_known_by_certificate_and_user_and_routers_by_certificate() -> None:
-    assert {subject["id"] for subject in EVERYBODY["subjects"] if "usernames" in subject} == IDENTITIES
-    assert {role.name for role in PEOPLES} <= IDENTITIES
+@everybody
+def test_people_are_known_by_certificate_and_user_and_routers_by_certificate(
+    section: dict[str, Any], identities: set[str]
+) -> None:
+    assert {subject["id"] for subject in section["subjects"] if "usernames" in subject} == identities
+
+
+def test_every_role_takes_part_in_some_deployment() -> None:
+    assert {identity(role, "kinect0") for role in ROLES} == set.union(*(them for _, them in DEPLOYED.values()))
+    assert {role.name for role in PEOPLES} <= set.union(*(them for _, them in DEPLOYED.values()))
 
 
 def test_the_bridge_to_ros_may_put_and_read_what_its_table_says_and_a_robot_the_other_side() -> None:
@@ -163,11 +201,28 @@ def test_the_bridge_to_ros_may_put_and_read_what_its_table_says_and_a_robot_the_
         assert any(zenoh.KeyExpr(each).includes(key) for each in allowed(BRIDGE, "ingress", "liveliness_token", 7))
 
 
-def test_a_robot_has_nothing_of_ours_and_without_a_bridge_nothing_at_all() -> None:
-    every = {each for rule in rules(ROBOT, "", 0) for each in rule["key_exprs"]}
+def test_bodies_are_put_by_detectors_and_read_by_the_bridge_that_makes_skeletons_of_them() -> None:
+    pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
+    from ros2_bridge.bridge import Ros2Bridge
+    from ros2_bridge.settings import Settings
+
+    settings = Settings(ros_domain_id=7, ros_bodies=True, ros_frame_id="camera_optical_frame")
+    for topic in Ros2Bridge(settings).foreign_node("5e55").subscribes:
+        key = zenoh.KeyExpr(topic.key)
+        for role, flow in ((BODIES_BRIDGE, "egress"), (DETECTOR, "ingress")):
+            assert any(zenoh.KeyExpr(each).includes(key) for each in allowed(role, flow, "put", 7)), topic.key
+            assert not any(zenoh.KeyExpr(each).intersects(key) for each in allowed(role, flow, "put", 0))
+        if topic.name != "mark":
+            for role, flow in ((BRIDGE, "egress"), (ROBOT, "ingress")):
+                assert not any(zenoh.KeyExpr(each).intersects(key) for each in allowed(role, flow, "put", 7)), topic.key
+
+
+@pytest.mark.parametrize("role", [ROBOT, DETECTOR], ids=lambda role: role.name)
+def test_ros_nodes_have_nothing_of_ours_and_without_a_bridge_nothing_at_all(role: Role) -> None:
+    every = {each for rule in rules(role, "", 0) for each in rule["key_exprs"]}
     assert every
     assert not any(each.startswith("actum/") for each in every)
-    assert [*rules(ROBOT, "", None)] == []
+    assert [*rules(role, "", None)] == []
 
 
 @pytest.mark.parametrize("cross", [False, True])

@@ -13,14 +13,18 @@ from actum import codec
 from actum.bridge import Foreign
 from actum.commands import JSON, MSGPACK, Command, Refusal, packed, unpacked
 from actum.messages import Event, Message, Status, Training
-from actum.node import Counters, Numbering, Tick
+from actum.node import SECOND_NS, Counters, Numbering, Tick
 from dashboards import Colleague
 from fuzzing.mutations import of_bytes, request
 from model_trainer.trainer import ModelTrainer
 from node_cases import CASES, CONTINUING, FINDING, FUSION, NOON_NS, Case
 from people import reaches
 from ros2_bridge.bridge import Ros2Bridge
+from ros2_bridge.frames import header, transform
+from ros2_bridge.hri.types import IDS_LIST
+from ros2_bridge.message_types import TF_MESSAGE, made, to_cdr
 from ros2_bridge.settings import Settings as BridgeSettings
+from ros2_bridge.topics import OTHERS_TRACKED, SUBSCRIBED
 from teaching import ScriptedJob, mark
 from web_dashboard.hub import Hub, Mailbox
 from web_dashboard.node import MOST_REFUSALS, WebDashboard
@@ -166,6 +170,22 @@ def _bridge(_: Path) -> Target:
     )
 
 
+def _bodies(_: Path) -> Target:
+    node = Ros2Bridge(BridgeSettings(ros_bodies=True, ros_frame_id="camera"))
+    of = header(SECOND_NS, "camera")
+    ids = to_cdr(made(IDS_LIST, header=of, ids=["ab"]))
+    list(node.receive(Foreign(OTHERS_TRACKED.name, ids, OTHERS_TRACKED.name)))
+
+    def taken(payload: bytes) -> Iterable[Message]:
+        """Take a payload as one of each of the topics."""
+        keyed = ((topic.name, f"0{topic.name.replace('*', 'ab')}/type/hash") for topic in SUBSCRIBED[1:])
+        return [message for name, key in keyed for message in node.receive(Foreign(name, payload, key))]
+
+    transforms = [transform(of, f"{name}_ab", (0, 0, 2)) for name in ("head", "torso", "l_hip", "r_hip")]
+    placed = to_cdr(made(TF_MESSAGE, transforms=transforms))
+    return Target(node.name, _everything, node.handle, node.counters, foreign=taken, sample=placed)
+
+
 def _trainer(folder: Path) -> Target:
     node = ModelTrainer(folder, folder / "model.npz", "kinect0", ScriptedJob, lambda: NOON_NS)
     commands = {command.name: command for command in node.commands}
@@ -185,5 +205,6 @@ TARGETS: Mapping[str, Callable[[Path], Target]] = {
     "web_dashboard": _dashboard,
     "model_trainer": _trainer,
     "ros2_bridge": _bridge,
+    "ros2_bridge, bodies": _bodies,
 }
 """How each service is built, in a folder of its own."""

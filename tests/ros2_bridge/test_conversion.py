@@ -12,7 +12,9 @@ pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
 from actum.bridge import Foreign
 from actum.messages import (
+    ActedObject,
     Event,
+    HeldObject,
     Image,
     Intended,
     Intent,
@@ -199,15 +201,32 @@ def test_an_event_says_where_the_object_ended_as_far_as_that_is_known(quaternion
     assert (typed.displacement_known, xyz(typed.displacement)) == (True, [0.1, 0.2, 0.3])
 
 
-def test_an_event_says_what_became_of_the_object_and_whether_that_was_meant() -> None:
+def test_an_event_says_what_became_of_the_object_and_of_others_that_are_as_likely() -> None:
     acted = told().object
     assert acted is not None
-    lifted = acted.model_copy(update={"taken_along": True, "in_hand_at_end": True})
-    typed = put(told(object=lifted, result="0.18 m up", agrees=True))["event"]
-    assert (typed.result, typed.agreement_known, typed.agrees) == ("0.18 m up", True, True)
-    assert (typed.taken_along, typed.in_hand_at_end) == (True, True)
-    unsure = put(told(object=None, why="two cups", candidates=[acted, acted.model_copy(update={"id": 2})]))["event"]
-    assert (unsure.why, unsure.candidate_ids, unsure.agreement_known) == ("two cups", ["1", "2"], False)
+    fixed = ObjectPose(frame="world", position_m=[4, 5, 6], quaternion_xyzw=None)
+    moved = acted.model_copy(update={"taken_along": True, "in_hand_at_end": True, "fixed_pose": fixed})
+    typed = put(
+        told(
+            object=moved,
+            held=HeldObject(id=7, name="knife"),
+            candidates=[moved, moved.model_copy(update={"id": 9})],
+            motion=Motion(displacement_m=[0, 0.2, 0], direction="up"),
+            agrees=False,
+            result="0.20 m up",
+            session_id="monday",
+        )
+    )["event"]
+    assert (typed.taken_along, typed.in_hand_at_end, typed.direction) == (True, True, "up")
+    assert (typed.fixed_frame, xyz(typed.fixed_pose.position)) == ("world", [4, 5, 6])
+    assert (typed.held_id, typed.held_name, typed.candidate_ids) == ("7", "knife", ["1", "9"])
+    assert (typed.agreement_known, typed.agrees, typed.result, typed.session_id) == (True, False, "0.20 m up", "monday")
+
+
+def test_what_is_not_known_of_an_event_is_empty() -> None:
+    typed = put(told(object=None, held=None, motion=None, agrees=None, why="nothing was near"))["event"]
+    assert (typed.why, typed.agreement_known, typed.direction, typed.result) == ("nothing was near", False, "", "")
+    assert (typed.fixed_frame, typed.held_name, typed.candidate_ids, typed.taken_along) == ("", "", [], False)
 
 
 def test_an_event_that_is_not_valid_says_why() -> None:
@@ -298,32 +317,42 @@ CARRIED = {
     "start_ns": {"start"},
     "end_ns": {"end"},
     "object": {
-        *("object_id", "object_name", "position_known", "orientation_known", "object_pose"),
-        *("taken_along", "in_hand_at_end"),
+        *("object_id", "object_name", "taken_along", "in_hand_at_end"),
+        *("position_known", "orientation_known", "object_pose", "fixed_frame", "fixed_pose"),
     },
-    "agrees": {"agreement_known", "agrees"},
+    "held": {"held_id", "held_name"},
+    "motion": {"displacement_known", "displacement", "direction"},
     "candidates": {"candidate_ids"},
-    "held": {"held_id"},
-    "motion": {"displacement_known", "displacement"},
+    "agrees": {"agreement_known", "agrees"},
     **{
         name: {name}
         for name in (
             *("segment_id", "valid", "reason", "agent", "hand", "action", "confidence", "unknown"),
-            *("outcome", "sentence", "result", "why"),
+            *("outcome", "sentence", "session_id", "result", "why"),
         )
     },
 }
 """The fields of ActionEvent.msg in which each field of an event is carried."""
 ONLY_IN_JSON = {
-    *("seq", "session_id", "frames", "missed", "missing_joints"),
+    *("seq", "frames", "missed", "missing_joints"),
     *("activations", "objects_present", "distances_m", "pointing"),
 }
 """The fields of an event that only `event_json` carries: how it travelled, and what was weighed."""
+PARTS_CARRIED = {
+    ActedObject: {"id", "name", "taken_along", "in_hand_at_end", "pose", "fixed_pose"},
+    HeldObject: {"id", "name"},
+    Motion: {"displacement_m", "direction"},
+    ObjectPose: {"frame", "position_m", "quaternion_xyzw"},
+}
+PARTS_ONLY_IN_JSON = {ActedObject: {"distance_m", "carried", "last_seen_ns"}, Motion: {"turn_ns"}}
+"""The same of the parts of an event."""
 
 
 def test_every_field_of_an_event_is_carried_or_left_to_the_json() -> None:
     assert {*CARRIED} | ONLY_IN_JSON == {*Event.model_fields}
     assert not {*CARRIED} & ONLY_IN_JSON
+    for part, carried in PARTS_CARRIED.items():
+        assert carried | PARTS_ONLY_IN_JSON.get(part, set()) == {*part.model_fields}
 
 
 def test_every_field_of_the_message_carries_one_of_an_event() -> None:

@@ -97,6 +97,17 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
             help="add the bridge to ROS 2, for ROS 2 nodes with this ROS_DOMAIN_ID (usually 0); default: no bridge",
         ),
     ] = None,
+    ros_bodies: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FRAME",
+            help=(
+                "publish as the sensor's skeletons the bodies that ROS 2 nodes track, in place of the gateway; FRAME "
+                "is the optical frame of the camera that sees the bodies. Needs --ros2 and a single sensor. Default: "
+                "the gateway of each camera host publishes skeletons"
+            ),
+        ),
+    ] = None,
     not_secured: Annotated[
         bool,
         typer.Option(
@@ -114,13 +125,18 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         fail("--open and --passwords exclude each other: leave out one of them")
     with failing_on(SettingsError, InvalidKeyError):
         placed = hosts_of(hosts, sensors)
+    cameras = [host for host in placed if host.kind == "camera"]
+    if ros_bodies is not None and (ros2 is None or simulate or len(cameras) > 1):
+        fail("--ros-bodies needs --ros2 and a single camera host, and excludes --simulate")
     with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, revoked_before, write_deployment
 
         folder.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
         with alone(folder):
             revoked = revoked_before(folder)
-            deployment = Deployment(placed, not not_secured, passwords, images, one_router, simulate, revoked, ros2)
+            deployment = Deployment(
+                placed, not not_secured, passwords, images, one_router, simulate, revoked, ros2, ros_bodies
+            )
             write_deployment(deployment, folder, YEAR)
     for host in placed:
         say(f"{host.name}: copy {folder / host.name} to {host.address} and follow its README.md there")

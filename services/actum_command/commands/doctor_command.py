@@ -20,7 +20,7 @@ LATENCY = "latency p50/p99 (ms)"
 """A heading that is longer than what stands below it."""
 WIDTHS = {LATENCY: 15}
 """Most characters of a column, so that those with more to say have room."""
-SOURCES = {"sensor_gateway": "sensor", "marker_camera": "marker camera"}
+SOURCES = {"sensor_gateway": "sensor", "ros2_bridge": "sensor", "marker_camera": "marker camera"}
 """The name of a service's source in the output."""
 
 

@@ -11,8 +11,10 @@ from actum_command.doctor.heard import Heard, hear
 from actum_command.doctor.service_checks import Finding, finding
 from actum_command.processes import SERVICES
 
-EXPECTED = ("sensor_gateway", *SERVICES)
-"""The services of a whole system; the simulated scene replaces the sensor gateway under the same name."""
+GATEWAY, BRIDGE = "sensor_gateway", "ros2_bridge"
+"""The services that publish skeletons: the simulated scene has the gateway's name, the bridge reads bodies."""
+EXPECTED = (GATEWAY, *SERVICES)
+"""The services of a whole system whose skeletons do not come from ROS 2."""
 
 ROLE = "set ACTUM_CREDENTIALS to the credentials folder of a role that may read messages, such as viewer"
 """What to do where access control keeps a program from reading."""
@@ -37,11 +39,23 @@ def examine(client: Client) -> Examination:
     hidden = everything_denied(heard, client)
     if hidden is not None:
         return Examination([], (hidden,))
-    names = [*EXPECTED, *sorted({*heard.tokens, *heard.statuses} - set(EXPECTED))]
-    problems = (*partly_denied(heard), *stream_checks.problems(heard.infos, heard.statuses, heard.streams))
+    there = {*heard.tokens, *heard.statuses}
+    reads_bodies = any(info.service == BRIDGE and info.source for info in heard.infos)
+    expected = [name for name in EXPECTED if not (reads_bodies and name == GATEWAY)]
+    names = [*expected, *sorted(there - set(expected))]
+    two = two_sources() if reads_bodies and GATEWAY in there else ()
+    problems = (*partly_denied(heard), *two, *stream_checks.problems(heard.infos, heard.statuses, heard.streams))
     clocks = clock_remarks(clock_offsets(heard.answers))
     facts = (*stream_checks.hops(heard), *who_serves(heard))
     return Examination([finding(name, heard) for name in names], problems, tuple(clocks), facts)
+
+
+def two_sources() -> Iterator[str]:
+    """Yield the problem of a sensor whose skeletons two programs publish."""
+    yield (
+        f"both {GATEWAY} and {BRIDGE} publish this sensor's skeletons, so people are mixed up: start {BRIDGE} without "
+        f"--ros-bodies, or with a --sensor of its own, or stop {GATEWAY}"
+    )
 
 
 def who_serves(heard: Heard) -> Iterator[str]:

@@ -30,7 +30,7 @@ class Announcing:
     def announce(self, topics: Iterable[RosTopic]) -> Iterator[ForeignTopic]:
         """Yield the chosen topics as they are to be published from now on."""
         for topic in topics:
-            if topic.chosen_by in self._settings.ros_topics and topic.name not in self._announced:
+            if topic.chosen_by in self._settings.chosen_topics and topic.name not in self._announced:
                 self._announced.add(topic.name)
                 yield published(topic, self._settings, self._session_id, next(self._numbers))
 

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from actum.arrays import Array
 from actum.skeletons import INDEX
 from ros2_bridge.frames import optical_from_body
-from ros2_bridge.hri_out.limbs import SIDES, Limb, Quaternion, Vector, arm, head, leg
+from ros2_bridge.hri_out.limbs import SIDES, Limb, Quaternion, Vector, arm, head, inverse, leg, product, rotated
 
 LINKS = {
     "torso": "neck",
     "head": "head",
+    "spine": "torso",
     **{
         f"{side}_{link}": f"{of}_{joint}"
         for side, of in (("l", "left"), ("r", "right"))
@@ -21,7 +22,8 @@ LINKS = {
     },
 }
 """The links of human_description that lie at a joint of ours, and that joint. The model's torso is between the
-shoulders, so it is our neck; our hands and feet stand for wrists and ankles."""
+shoulders, so it is our neck; our hands and feet stand for wrists and ankles. The model lacks the middle of the trunk,
+our torso, which has a frame of its own all the same: `spine`."""
 _JOINT_OF_LINK = [INDEX[joint] for joint in LINKS.values()]
 """The index of each link's joint, in the order of `LINKS`."""
 SHORTEST_M = 0.02
@@ -53,23 +55,44 @@ def body_of(joints: Array) -> Body | None:
         return None
     placed[:3, 3] = hips
     at = dict(zip(LINKS, ((joints[_JOINT_OF_LINK] - hips) @ placed[:3, :3]).tolist(), strict=True))
-    limbs = _limbs(at)
-    turned = {name: quaternion for limb in limbs for name, quaternion in limb.turned.items()}
+    bend_rad = _waist(at["torso"])
+    trunk: Quaternion = (0.0, math.sin(bend_rad / 2), 0.0, math.cos(bend_rad / 2))
+    upper, legs = _upper_limbs(at, inverse(trunk)), _legs(at)
+    turned = {name: product(trunk, quaternion) for limb in upper for name, quaternion in limb.turned.items()}
+    turned |= {name: quaternion for limb in legs for name, quaternion in limb.turned.items()}
     links = {name: (xyz, turned.get(name, AS_THE_BODY)) for name, xyz in at.items() if not math.isnan(xyz[0])}
-    # z is along the trunk, so the trunk is never bent in the body's frame
-    angles = {"waist": 0.0} | {name: angle for limb in limbs for name, angle in limb.angles.items()}
+    angles = {"waist": bend_rad} | {name: angle for limb in (*upper, *legs) for name, angle in limb.angles.items()}
     return Body(placed, angles, links)
 
 
-def _limbs(at: dict[str, list[float]]) -> list[Limb]:
-    """Return the limbs by the links' places in the body's frame (m), NaN where unknown."""
-    limbs = [head(_direction(at["torso"], at["head"]))]
+def _waist(neck: Vector) -> float:
+    """Return the angle (rad) by which the trunk is bent forward, from the neck's place (m); 0 where that is unknown.
+
+    The body's z goes from the hips to the middle of the trunk, from which the neck may be further ahead.
+    """
+    return 0.0 if math.isnan(neck[0]) else math.atan2(neck[0], neck[2])
+
+
+def _upper_limbs(at: dict[str, list[float]], trunk_from_body: Quaternion) -> list[Limb]:
+    """Return head and arms, whose angles are those to the trunk, by the links' places in the body's frame (m)."""
+
+    def along(start: str, end: str) -> Vector | None:
+        bone = _direction(at[start], at[end])
+        return None if bone is None else rotated(trunk_from_body, bone)
+
+    arms = [
+        arm(side, along(f"{side}_shoulder", f"{side}_elbow"), along(f"{side}_elbow", f"{side}_wrist")) for side in SIDES
+    ]
+    return [head(along("torso", "head")), *arms]
+
+
+def _legs(at: dict[str, list[float]]) -> list[Limb]:
+    """Return the legs by the links' places in the body's frame (m), NaN where unknown."""
+    legs = []
     for side in SIDES:
-        shoulder, elbow, wrist = (at[f"{side}_{link}"] for link in ("shoulder", "elbow", "wrist"))
         hip, knee, ankle = (at[f"{side}_{link}"] for link in ("hip", "knee", "ankle"))
-        limbs.append(arm(side, _direction(shoulder, elbow), _direction(elbow, wrist)))
-        limbs.append(leg(side, _direction(hip, knee), _direction(knee, ankle)))
-    return limbs
+        legs.append(leg(side, _direction(hip, knee), _direction(knee, ankle)))
+    return legs
 
 
 def _direction(start: Vector, end: Vector) -> Vector | None:

@@ -47,7 +47,7 @@ class Humans:
         self._cropper = _cropper(settings, counters)
         self._postures: dict[Human, int] = {}
         self._now_ns = self._repeated_ns = self._stamp_ns = 0
-        self._is_wanted = bool({"bodies", "body_links", "cropped", "persons", "intents"} & settings.ros_topics)
+        self._is_wanted = bool({"bodies", "body_links", "cropped", "persons", "intents"} & settings.chosen_topics)
 
     def begin(self, session_id: str, lasting: Iterable[ForeignTopic]) -> None:
         """Begin anew in a Zenoh session in which the lasting topics are published: nobody is there."""
@@ -153,7 +153,7 @@ class Humans:
         if human is None:
             self._counters.counts["one person too many, left out of /humans"] += 1
             return
-        chosen, on = self._settings.ros_topics, self._topics.on
+        chosen, on = self._settings.chosen_topics, self._topics.on
         body = body_of(joints)
         if body is not None:
             placed += converting.frames(of, human, body, "body_links" in chosen, "persons" in chosen)
@@ -177,7 +177,7 @@ def _cropper(settings: Settings, counters: Counters) -> "Cropper | None":
     Raises:
         SettingsError: OpenCV or imagesize is not installed.
     """
-    if "cropped" not in settings.ros_topics:
+    if "cropped" not in settings.chosen_topics:
         return None
     try:
         from ros2_bridge.hri_out.cropping import Cropper  # an installation for ROS 2 lacks OpenCV

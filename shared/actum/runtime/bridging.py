@@ -5,12 +5,12 @@ import time
 from collections.abc import Callable, Sequence
 
 import zenoh
-from zenoh import ext
+from zenoh import ext, handlers
 
 from actum.bridge import Bridge, Foreign, ForeignTopic, Withdrawn
 from actum.messages import Message
 from actum.node import Tick
-from actum.runtime.inbox import ENDING_S, Subscriber, subscribe
+from actum.runtime.inbox import ENDING_S, Subscriber
 from actum.runtime.outbox import Outbox, Publisher
 from actum.runtime.serving import S, configured, live
 from actum.runtime.step_service import StepService
@@ -40,14 +40,15 @@ class BridgeService(StepService):
         token = session.liveliness().declare_token(node.token)  # it comes first, as the readers of tokens expect
         self._publishers = {topic.name: ForeignPublisher(session, topic) for topic in node.publishes}
         self._session = session
-        subscribers = [subscribe(session, topic.key, RING) for topic in node.subscribes]
+        subscribers = [_subscribed(session, topic) for topic in node.subscribes]
         threads = [
             threading.Thread(target=self._read, args=(topic, subscriber, outbox, stop), daemon=True)
             for topic, subscriber in zip(node.subscribes, subscribers, strict=True)
         ]
         for thread in threads:
             thread.start()
-        tokens = [token, *(session.liveliness().declare_token(topic.token) for topic in node.subscribes)]
+        topic_tokens = [topic.token for topic in node.subscribes if topic.token]
+        tokens = [token, *map(session.liveliness().declare_token, topic_tokens)]
         try:
             super()._work(session, outbox, stop, vacant_s)
         finally:
@@ -71,8 +72,19 @@ class BridgeService(StepService):
         """Hand on what comes on a foreign topic until the subscriber is undeclared."""
         for sample in subscriber:
             with self._ending_at_a_bug(f"while handling a message on {topic.key}", stop), self._lock:
-                for message in self._bridge.receive(Foreign(topic.name, sample.payload.to_bytes())):
+                foreign = Foreign(topic.name, sample.payload.to_bytes(), str(sample.key_expr))
+                for message in self._bridge.receive(foreign):
                     outbox.put(message)
+
+
+def _subscribed(session: zenoh.Session, topic: ForeignTopic) -> Subscriber:
+    """Declare a subscriber to what others put on a topic; of a latched one, also to the newest of each publisher."""
+    channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(RING)
+    others = zenoh.Locality.REMOTE  # a bridge would take its own transforms for those of others
+    if not topic.latched:
+        return session.declare_subscriber(topic.key, channel, allowed_origin=others)
+    newest = ext.HistoryConfig(detect_late_publishers=True, max_samples=1)
+    return ext.declare_advanced_subscriber(session, topic.key, channel, allowed_origin=others, history=newest)
 
 
 class ForeignPublisher:

@@ -125,6 +125,37 @@ def test_a_system_that_is_well_is_said_to_be(monkeypatch: pytest.MonkeyPatch) ->
     assert "dropped" not in output
 
 
+class FromRos(System):
+    """A system whose skeletons come from a bridge that reads bodies; the gateway runs beside it if that is wanted."""
+
+    def __init__(self, gateway: bool) -> None:
+        super().__init__(status("ros2_bridge"), source="ROS 2, bodies of ROS4HRI in the frame camera")
+        self._has_gateway = gateway
+        if not gateway:
+            self._statuses = [it for it in self._statuses if getattr(it, "service", "") != "sensor_gateway"]
+            del self._versions["sensor_gateway"]
+        self.also = ("ros2_bridge", "a")
+
+    def alive(self) -> list[str]:
+        return [token for token in super().alive() if self._has_gateway or "sensor_gateway" not in token]
+
+    def answers(self) -> list[Answer]:
+        return list({answer.info.service: answer for answer in reversed(super().answers())}.values())
+
+
+def test_a_bridge_that_reads_bodies_replaces_the_gateway(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, FromRos(gateway=False))
+    assert code == 0, output
+    assert "sensor_gateway" not in output
+    assert "sensor: ROS 2, bodies of ROS4HRI in the frame camera" in output
+
+
+def test_a_gateway_beside_a_bridge_that_reads_bodies_is_a_problem(monkeypatch: pytest.MonkeyPatch) -> None:
+    code, output = diagnosed(monkeypatch, FromRos(gateway=True))
+    assert code == 1
+    assert "both sensor_gateway and ros2_bridge publish this sensor's skeletons" in output.replace("\n", " ")
+
+
 def test_another_version_is_a_problem_though_it_has_the_same_schemas(monkeypatch: pytest.MonkeyPatch) -> None:
     code, output = diagnosed(monkeypatch, System(status("som_classifier"), version="0.0.1"))
     assert code == 1

@@ -1,0 +1,135 @@
+"""What ROS4HRI costs in accuracy: MSR Action3D's test people as bodies of ROS 2 and back, answered as before.
+
+    ACTUM_DATA=… python -m benchmarks.ros4hri
+
+A model of the people with odd numbers answers each sequence of those with even numbers: as it was recorded; and
+published by the bridge as ROS4HRI's bodies and read again by another. What goes over, as bytes, are the frames of the
+joints on /tf; those alone that human_description has, which lacks the middle of the trunk; or joint_states, the angles
+of human_description's joints, whose bones have lengths of their own and whose shoulders keep still. All else is the
+code that runs live.
+"""
+
+import tempfile
+from collections.abc import Collection, Iterator, Sequence
+from pathlib import Path
+
+from benchmarks.originals import ImportedSets
+
+from actum import keys
+from actum.bridge import Foreign
+from actum.messages import Message, Skeleton
+from actum.node import SECOND_NS
+from actum.recording import Recording
+from actum_dataset_importer.importing import import_msr_action3d
+from actum_model_trainer.answering import answer, encoded
+from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.training import train
+from ros2_bridge.bridge import Ros2Bridge
+from ros2_bridge.hri_in.human_model import SPINE
+from ros2_bridge.message_types import TF_MESSAGE, from_cdr, made, to_cdr
+from ros2_bridge.settings import Settings, TopicName
+from som_classifier.model import Model
+from som_classifier.presets import DEFAULT
+
+SEED = 0
+FRAME = "camera_optical_frame"
+LATER_NS = SECOND_NS
+"""Recordings start at 0, which in ROS means that there is no stamp (ns)."""
+READ = ("/tf", "/humans/bodies/tracked")
+"""The topics that go over, those of joint angles beside them."""
+ALL, OF_THE_MODEL, ANGLES = "frames on /tf", "of human_description alone", "joint_states"
+"""The ways that skeletons take."""
+Answers = dict[str, tuple[str, str]]
+"""What was answered and what is right, by the name of the sequence."""
+
+
+class ThroughRos(Recording):
+    """A recording whose skeletons are published as ROS4HRI's bodies, and read again."""
+
+    def __init__(self, path: Path, way: str) -> None:
+        super().__init__(path)
+        chosen: set[TopicName] = {"tf", "bodies"} if way == ANGLES else {"tf", "bodies", "body_links"}
+        self._way = way
+        self._out = Ros2Bridge(Settings(ros_frame_id=FRAME, ros_topics=frozenset(chosen)))
+        self._back = Ros2Bridge(Settings(ros_frame_id=FRAME, ros_bodies=True))
+        self._out.foreign_node("out")
+        self._back.foreign_node("back")
+
+    def messages(self, topics: Collection[keys.Topic] | None = None) -> Iterator[Message]:
+        """Yield what the recording holds, with the skeletons that came back in the places of those that went out."""
+        messages = [*super().messages(topics)]
+        back = {
+            skeleton.stamp_ns - LATER_NS: skeleton
+            for message in messages
+            if isinstance(message, Skeleton)
+            for skeleton in self._sent(message)
+        }
+        for message in messages:
+            if not isinstance(message, Skeleton) or not message.valid:
+                yield message
+            elif message.stamp_ns in back:
+                yield message.model_copy(update={"agents": back[message.stamp_ns].agents})
+
+    def _sent(self, message: Skeleton) -> Iterator[Skeleton]:
+        """Yield the skeletons that come back once one was published."""
+        for output in self._out.handle(message.model_copy(update={"stamp_ns": message.stamp_ns + LATER_NS})):
+            if isinstance(output, Foreign) and (output.topic in READ or output.topic.endswith("joint_states")):
+                put = _without_trunk(output) if self._way == OF_THE_MODEL else output
+                for skeleton in self._back.receive(_received(put)):
+                    assert isinstance(skeleton, Skeleton)
+                    yield skeleton
+
+
+def _without_trunk(put: Foreign) -> Foreign:
+    """Return a payload without the frames that human_description lacks."""
+    if put.topic != "/tf":
+        return put
+    transforms = from_cdr(put.payload, TF_MESSAGE).transforms
+    kept = [each for each in transforms if not each.child_frame_id.startswith(f"{SPINE}_")]
+    return Foreign(put.topic, to_cdr(made(TF_MESSAGE, transforms=kept)))
+
+
+def _received(put: Foreign) -> Foreign:
+    """Return a payload as it is received, where the topics of all bodies have one name."""
+    of_body = put.topic.endswith("joint_states")
+    name = "/humans/bodies/*/joint_states" if of_body else put.topic
+    return Foreign(name, put.payload, f"0{put.topic}/type/hash")
+
+
+def answers(model: Model, recordings: Sequence[Recording]) -> Answers:
+    """Answer each labelled sequence once it has ended; one that is lost on the way is missing."""
+    samples = samples_from(recordings).usable
+    return {_name(each): (answer(model, encoded(model, each), 1.0).label, each.label) for each in samples}
+
+
+def _name(sample: SegmentSample) -> str:
+    return sample.segment_id
+
+
+def lines(data: ImportedSets) -> Iterator[str]:
+    """Yield a line for each way, with how often it is right and how often it says what is said without it."""
+    recordings = data.recordings("msr_action3d", import_msr_action3d)
+    odd, even = ([each for each in recordings if int(each.person) % 2 == rest] for rest in (1, 0))
+    model = train(samples_from(odd).usable, DEFAULT, SEED)
+    plain = answers(model, even)
+    yield f"{'as recorded':<27}{_right(plain, plain)}"
+    for way in (ALL, OF_THE_MODEL, ANGLES):
+        found = answers(model, [ThroughRos(each.path, way) for each in even])
+        same = sum(found.get(name, ("",))[0] == label for name, (label, _) in plain.items())
+        yield f"{way:<27}{_right(found, plain)}; the same answer to {same} ({100 * same / len(plain):.1f} %)"
+
+
+def _right(found: Answers, of: Answers) -> str:
+    right = sum(label == wanted for label, wanted in found.values())
+    return f"right about {right} of {len(of)} sequences ({100 * right / len(of):.1f} %)"
+
+
+def main() -> None:
+    """Measure, and print."""
+    with tempfile.TemporaryDirectory() as folder:
+        for line in lines(ImportedSets(Path(folder))):
+            print(line, flush=True)
+
+
+if __name__ == "__main__":
+    main()

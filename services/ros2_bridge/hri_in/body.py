@@ -1,0 +1,93 @@
+"""One body that others track: its number with us, its joint angles of late, and where its joints are."""
+
+from collections import OrderedDict
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from ros2_bridge.hri_in.body_joints import BODY, joints_of
+from ros2_bridge.hri_in.human_model import link_places
+from ros2_bridge.hri_in.placements import Vector
+from ros2_bridge.hri_in.transform_tree import HISTORY, TransformTree
+
+
+class Found(NamedTuple):
+    """The joints of a body at one instant.
+
+    Attributes:
+        joints: (m) in our order, in the camera's optical frame; None where one is unknown.
+        by_frames: whether they are frames of TF; otherwise the human model's, from angles of joints.
+    """
+
+    joints: list[Vector | None]
+    by_frames: bool
+
+    @property
+    def known(self) -> frozenset[int]:
+        """The indices of the joints that are known."""
+        return frozenset(i for i, joint in enumerate(self.joints) if joint is not None)
+
+
+class Body:
+    """A tracked body.
+
+    Attributes:
+        number: the agent's number in our messages.
+        is_awaited: whether a skeleton waits for the body's joints.
+        has_3d, has_2d: whether joints in space, or points in an image, were received since the last review.
+    """
+
+    def __init__(self, body_id: str, number: int, optical_frame: str) -> None:
+        self.number = number
+        self.is_awaited = True
+        self.has_3d = self.has_2d = False
+        self._suffix = f"_{body_id}"
+        self._optical_frame = optical_frame
+        self._angles_rad: OrderedDict[int, Mapping[str, float]] = OrderedDict()
+        self._last: Found | None = None
+
+    def take_angles(self, stamp_ns: int, names: list[str], angles_rad: list[float]) -> None:
+        """Note the angles (rad) of joints at an instant, by names that end in the body's id."""
+        pairs = zip(names, angles_rad, strict=False)
+        self._angles_rad[stamp_ns] = {name.removesuffix(self._suffix): angle for name, angle in pairs}
+        if len(self._angles_rad) > HISTORY:
+            self._angles_rad.popitem(last=False)
+
+    def find(self, tree: TransformTree, stamp_ns: int) -> Found | None:
+        """Return the joints at an instant, of frames if there are any, else of the human model.
+
+        None where neither is known at that instant.
+        """
+
+        def framed(name: str) -> Vector | None:
+            frame = f"{name}{self._suffix}"
+            if not tree.knows(frame):
+                return None
+            placed = tree.placement(frame, self._optical_frame, stamp_ns, exactly=self._suffix)
+            return None if placed is None else placed.position_m
+
+        found = Found(joints_of(framed), by_frames=True)
+        return found if found.known else self._modelled(tree, stamp_ns)
+
+    def is_whole(self, found: Found | None) -> bool:
+        """Tell whether no more is to be waited for: the joints of the last skeleton are there, from the same source."""
+        if found is None:
+            return not self.is_awaited
+        last = self._last
+        return last is not None and last.by_frames == found.by_frames and last.known <= found.known
+
+    def use(self, found: Found | None) -> None:
+        """Note what the newest skeleton shows of the body; nothing of it is awaited once a skeleton did without."""
+        self.is_awaited = found is not None
+        if found is not None:
+            self._last, self.has_3d = found, True
+
+    def _modelled(self, tree: TransformTree, stamp_ns: int) -> Found | None:
+        angles_rad = self._angles_rad.get(stamp_ns)
+        if angles_rad is None:
+            return None
+        body = tree.placement(f"{BODY}{self._suffix}", self._optical_frame, stamp_ns, exactly=self._suffix)
+        if body is None:
+            return None
+        places = {name: body.at(place) for name, place in link_places(angles_rad).items()}
+        found = Found(joints_of(places.get), by_frames=False)
+        return found if found.known else None

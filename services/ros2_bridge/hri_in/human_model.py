@@ -1,0 +1,109 @@
+"""The forward kinematics of ROS4HRI's model of the human body: joint angles in, places of joints out.
+
+The links and joints, their axes and proportions are those of `urdf/human-tpl.xacro` in the package human_description
+1.0.1 (github.com/ros4hri/human_description, commit a0fcf79f, BSD licence, Copyright 2022 PAL Robotics). The frame of
+the body lies between the hips: x forward, y left, z to the head.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from ros2_bridge.hri_in.placements import Placement, Vector, turned
+
+HEIGHT_M = 1.65
+"""Body height (m) that the model has by default, and with which ROS4HRI's detectors start it."""
+_UNIT_M = HEIGHT_M / 7.5
+"""The height of the model's head (m), of which its lengths are multiples."""
+HEAD_RADIUS_M = _UNIT_M / 2
+"""Half the height of the head (m)."""
+NECK_M = _UNIT_M * 0.25
+"""From the line of the shoulders to the lower end of the head (m)."""
+NECK_TO_SHOULDER_M = _UNIT_M * 0.8
+"""From the middle of the shoulders to either (m)."""
+UPPER_ARM_M = _UNIT_M * 1.6
+"""From the shoulder to the elbow (m)."""
+FOREARM_M = _UNIT_M
+"""From the elbow to the wrist (m)."""
+TORSO_M = _UNIT_M * 2.75
+"""From the middle of the hips to that of the shoulders (m)."""
+WAIST_M = _UNIT_M * 1.2
+"""From hip to hip (m)."""
+THIGH_M = _UNIT_M * 1.5
+"""From the hip to the knee (m)."""
+SHANK_M = _UNIT_M * 2
+"""From the knee to the ankle (m)."""
+
+
+SPINE = "spine"
+"""The name of the middle of the trunk, as the bridge's own frames have it."""
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link of the model: its parent, where it begins in it (m), and the joint between them with its axis.
+
+    Names are without the body's id. The joint is None where the link is fixed.
+    """
+
+    name: str
+    parent: str
+    origin_m: Vector
+    joint: str | None = None
+    axis: Vector = (0.0, 0.0, 0.0)
+
+
+def _arm(side: str, out: int) -> Iterator[Link]:
+    """Yield the links of an arm; `out` is 1 on the left and -1 on the right."""
+    yield Link(f"{side}_y_shoulder", "torso", (0, out * NECK_TO_SHOULDER_M, 0), f"{side}_y_shoulder", (0, 0, -out))
+    yield Link(f"{side}_p_shoulder", f"{side}_y_shoulder", (0, 0, 0), f"{side}_p_shoulder", (out, 0, 0))
+    yield Link(f"{side}_shoulder", f"{side}_p_shoulder", (0, 0, 0), f"{side}_r_shoulder", (0, 0, out))
+    yield Link(f"{side}_elbow", f"{side}_shoulder", (0, 0, -UPPER_ARM_M), f"{side}_elbow", (0, -1, 0))
+    yield Link(f"{side}_wrist", f"{side}_elbow", (0, 0, -FOREARM_M))
+
+
+def _leg(side: str, out: int) -> Iterator[Link]:
+    """Yield the links of a leg."""
+    yield Link(f"{side}_y_hip", "body", (0, out * WAIST_M / 2, 0), f"{side}_y_hip", (0, 0, -1))
+    yield Link(f"{side}_p_hip", f"{side}_y_hip", (0, 0, 0), f"{side}_p_hip", (out, 0, 0))
+    yield Link(f"{side}_hip", f"{side}_p_hip", (0, 0, 0), f"{side}_r_hip", (0, -1, 0))
+    yield Link(f"{side}_knee", f"{side}_hip", (0, 0, -THIGH_M), f"{side}_knee", (0, -1, 0))
+    yield Link(f"{side}_ankle", f"{side}_knee", (0, 0, -SHANK_M))
+
+
+LINKS: tuple[Link, ...] = (
+    Link("waist", "body", (0, 0, 0), "waist", (0, 1, 0)),
+    Link("torso", "waist", (0, 0, TORSO_M)),
+    Link("r_head", "torso", (0, 0, NECK_M), "r_head", (1, 0, 0)),
+    Link("y_head", "r_head", (0, 0, 0), "y_head", (0, 0, 1)),
+    Link("p_head", "y_head", (0, 0, 0), "p_head", (0, -1, 0)),
+    Link("head", "p_head", (HEAD_RADIUS_M / 2, 0, HEAD_RADIUS_M)),
+    *_arm("l", 1),
+    *_arm("r", -1),
+    *_leg("l", 1),
+    *_leg("r", -1),
+)
+"""The links in an order in which parents come first; the body is their root."""
+
+
+def link_places(angles_rad: Mapping[str, float]) -> dict[str, Vector]:
+    """Return where links begin (m) in the body's frame, by their name; what no angles determine is left out.
+
+    The middle of the trunk is among them, which is no link: it is on the body's z, by which the bridge places bodies.
+
+    Args:
+        angles_rad: the angle of each joint, by its name without the body's id; NaN where it is unknown.
+    """
+    placed, twisted = {"body": Placement()}, dict[str, Placement]()
+    places = {"body": (0.0, 0.0, 0.0), SPINE: (0.0, 0.0, TORSO_M / 2)}
+    for link in LINKS:
+        angle_rad = 0.0 if link.joint is None else angles_rad.get(link.joint, math.nan)
+        parent = placed.get(link.parent) or (twisted.get(link.parent) if link.origin_m[:2] == (0, 0) else None)
+        if parent is None:
+            continue
+        places[link.name] = parent.at(link.origin_m)
+        if link.parent in placed and math.isfinite(angle_rad):
+            placed[link.name] = parent.of(Placement(link.origin_m, turned(link.axis, angle_rad)))
+        elif link.parent in placed and link.axis[:2] == (0, 0):  # an unknown twist about z leaves the end of a limb
+            twisted[link.name] = parent.of(Placement(link.origin_m))
+    return places

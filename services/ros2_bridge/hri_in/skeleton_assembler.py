@@ -1,0 +1,137 @@
+"""Puts together, from what comes about each body and in any order, one skeleton message for each captured image."""
+
+from collections import OrderedDict
+from collections.abc import Iterator, Sequence
+
+from actum.messages import MOST_AGENTS, Agent, Joint, Skeleton
+from actum.node import Counters
+from actum.stamps import Order, StampGuard
+from ros2_bridge.hri_in.body import Body, Found
+from ros2_bridge.hri_in.placements import rotated
+from ros2_bridge.hri_in.transform_tree import TransformTree
+
+PATIENCE_NS = 100_000_000
+"""How much newer (ns) the newest stamp may be before an image's skeleton is put although something of it is missing."""
+MOST_OPEN = 32
+"""Most images whose skeletons wait for more: a third of a second at 100 Hz."""
+MOST_NUMBERED = 4096
+"""Bodies whose numbers are remembered. One that comes back after more others gets a new number."""
+OPTICAL = "optical"
+"""What names of frames with z along the line of sight contain (REP 103); in all others that are roots z is up."""
+
+LATE = "late body data, left out"
+"""What is counted where joints of a body come once the skeleton of their stamp, or a newer one, was put without."""
+
+
+class SkeletonAssembler:
+    """Collects what is known of the bodies at each stamp, and gives a skeleton once it is whole or overdue."""
+
+    def __init__(self, sensor: str, optical_frame: str, counters: Counters) -> None:
+        self.tree = TransformTree()
+        self.bodies: dict[str, Body] = {}
+        self.session = ""
+        self._sensor, self._optical_frame, self._counters = sensor, optical_frame, counters
+        self._numbers: OrderedDict[str, int] = OrderedDict()
+        self._highest_number = self._runs = 0
+        self._order = StampGuard()
+        self._open: dict[int, dict[str, Found]] = {}
+        self._newest_put_ns = self._judged_ns = -1
+
+    def track(self, stamp_ns: int, ids: Sequence[str]) -> Iterator[Skeleton]:
+        """Note who is there from now on, and yield the skeletons that are due."""
+        if len(ids) > MOST_AGENTS:
+            self._counters.reject("too_many_bodies", f"{len(ids)} bodies; the first {MOST_AGENTS} are used")
+        self.bodies = {each: self.bodies.get(each) or self._body(each) for each in ids[:MOST_AGENTS]}
+        yield from self.advance(stamp_ns, ids)
+
+    def owner(self, frame: str) -> str | None:
+        """Return the id of the tracked body to which a frame belongs by its name; None where it is no body's."""
+        return next((body_id for body_id in self.bodies if frame.endswith(f"_{body_id}")), None)
+
+    def advance(self, stamp_ns: int, ids: Sequence[str]) -> Iterator[Skeleton]:
+        """Look again at bodies of which something new is known at a stamp, and yield the skeletons that are due."""
+        if self._has_restarted(stamp_ns):
+            self._begin_anew()
+        bodies = [(body_id, self.bodies[body_id]) for body_id in ids if body_id in self.bodies]
+        if stamp_ns <= self._newest_put_ns:
+            self._note_late([body for _, body in bodies], stamp_ns)
+            return
+        found = self._open.setdefault(stamp_ns, {})
+        for body_id, body in bodies:
+            joints = body.find(self.tree, stamp_ns)
+            if joints is not None:
+                found[body_id] = joints
+        yield from self._due()
+
+    def _note_late(self, bodies: Sequence[Body], stamp_ns: int) -> None:
+        """Count bodies that a skeleton did without; one that is late by little is waited for from now on."""
+        for body in bodies:
+            if not body.is_awaited:
+                self._counters.counts[LATE] += 1
+                body.is_awaited = stamp_ns > self._newest_put_ns - PATIENCE_NS
+
+    def _has_restarted(self, stamp_ns: int) -> bool:
+        """Tell whether time began anew. Several messages have one stamp, which is judged once."""
+        if stamp_ns == self._judged_ns:
+            return False
+        self._judged_ns = stamp_ns
+        return self._order.judge(stamp_ns) is Order.RESTART
+
+    def _due(self) -> Iterator[Skeleton]:
+        """Yield the skeletons up to the newest whole one, and those that are overdue, in the order of their stamps."""
+        newest_ns = max(self._open)
+        overdue_ns = newest_ns - PATIENCE_NS
+        whole_ns = max((stamp_ns for stamp_ns in self._open if self._is_whole(stamp_ns)), default=-1)
+        spare = len(self._open) - MOST_OPEN
+        for i, stamp_ns in enumerate(sorted(self._open)):
+            if stamp_ns <= max(overdue_ns, whole_ns) or i < spare:
+                yield from self._skeleton(stamp_ns, self._open.pop(stamp_ns))
+
+    def _is_whole(self, stamp_ns: int) -> bool:
+        found = self._open[stamp_ns]
+        return all(body.is_whole(found.get(body_id)) for body_id, body in self.bodies.items())
+
+    def _skeleton(self, stamp_ns: int, found: dict[str, Found]) -> Iterator[Skeleton]:
+        """Yield the skeleton of an image; none where bodies are tracked, and no joint of any is known."""
+        self._newest_put_ns = stamp_ns
+        for body_id, body in self.bodies.items():
+            body.use(found.get(body_id))
+        shown = [(body.number, found[body_id]) for body_id, body in self.bodies.items() if body_id in found]
+        if self.bodies and not shown:
+            return
+        yield Skeleton(
+            stamp_ns=stamp_ns,
+            sensor=self._sensor,
+            agents=[_agent(number, joints) for number, joints in shown],
+            up_in_camera=self._up_in_camera(stamp_ns),
+            session_id=f"{self.session}.{self._runs}",
+        )
+
+    def _up_in_camera(self, stamp_ns: int) -> list[float] | None:
+        """Return the z axis of the root of the camera's tree, which points up (REP 103); None where it has none."""
+        root, camera = self.tree.top(self._optical_frame, stamp_ns)
+        if OPTICAL in root or root == self._optical_frame:
+            return None
+        return list(rotated(camera.inverse().xyzw, (0, 0, 1)))
+
+    def _body(self, body_id: str) -> Body:
+        """Return a body that has just come, with its number of earlier or a new one."""
+        if body_id not in self._numbers:
+            self._highest_number += 1
+            self._numbers[body_id] = self._highest_number
+        self._numbers.move_to_end(body_id)
+        if len(self._numbers) > MOST_NUMBERED:
+            self._numbers.popitem(last=False)
+        return Body(body_id, self._numbers[body_id], self._optical_frame)
+
+    def _begin_anew(self) -> None:
+        """Forget what was known at times that are not those of now: a recording is played again, or a clock was set."""
+        self._runs += 1
+        self._newest_put_ns = -1
+        self._open.clear()
+        self.tree.forget_moving()
+
+
+def _agent(number: int, found: Found) -> Agent:
+    joints: list[Joint] = [None if joint is None else list(joint) for joint in found.joints]
+    return Agent(agent=number, joints=joints, confidence=[0.0 if joint is None else 1.0 for joint in joints])
