@@ -22,7 +22,8 @@ from actum.node import SECOND_NS
 from actum.recording import Recording
 from actum_dataset_importer.importing import import_msr_action3d
 from actum_model_trainer.answering import answer, encoded
-from actum_model_trainer.samples import SegmentSample, samples_from
+from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
 from ros2_bridge.bridge import Ros2Bridge
 from ros2_bridge.hri_in.human_model import SPINE

@@ -1,6 +1,7 @@
 """A deployment whose skeletons come from the bodies that ROS 2 nodes track."""
 
-from actum_deployer.deployment import Deployment, hosts_of
+from actum_deployer.deployment import Deployment
+from actum_deployer.hosts import hosts_of
 from actum_deployer.programs import Data, environment, programs
 from actum_deployer.roles import BODIES_BRIDGE, BRIDGE
 
