@@ -1,7 +1,5 @@
 """What ROS4HRI costs in accuracy: MSR Action3D's test people as bodies of ROS 2 and back, answered as before.
 
-    ACTUM_DATA=… python -m benchmarks.ros4hri
-
 A model of the people with odd numbers answers each sequence of those with even numbers: as it was recorded; and
 published by the bridge as ROS4HRI's bodies and read again by another. What goes over, as bytes, are the frames of the
 joints on /tf; those alone that human_description has, which lacks the middle of the trunk; or joint_states, the angles
@@ -9,7 +7,6 @@ of human_description's joints, whose bones have lengths of their own and whose s
 code that runs live.
 """
 
-import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
@@ -107,7 +104,7 @@ def _name(sample: SegmentSample) -> str:
     return sample.segment_id
 
 
-def lines(data: ImportedSets) -> Iterator[str]:
+def of_round_trip(data: ImportedSets) -> Iterator[str]:
     """Yield a line for each way, with how often it is right and how often it says what is said without it."""
     recordings = data.recordings("msr_action3d", import_msr_action3d)
     odd, even = ([each for each in recordings if int(each.person) % 2 == rest] for rest in (1, 0))
@@ -123,14 +120,3 @@ def lines(data: ImportedSets) -> Iterator[str]:
 def _right(found: Answers, of: Answers) -> str:
     right = sum(label == wanted for label, wanted in found.values())
     return f"right about {right} of {len(of)} sequences ({100 * right / len(of):.1f} %)"
-
-
-def main() -> None:
-    """Measure, and print."""
-    with tempfile.TemporaryDirectory() as folder:
-        for line in lines(ImportedSets(Path(folder))):
-            print(line, flush=True)
-
-
-if __name__ == "__main__":
-    main()
