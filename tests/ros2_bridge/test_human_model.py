@@ -19,7 +19,8 @@ from ros2_bridge.hri_in.human_model import (
     WAIST_M,
     link_places,
 )
-from ros2_bridge.hri_in.placements import Placement, placement, rotated, turned
+from ros2_bridge.hri_in.placements import Placement, placement
+from ros2_bridge.rotations import about, rotated
 
 UPRIGHT = {link.joint: 0.0 for link in LINKS if link.joint is not None}
 QUARTER = math.pi / 2
@@ -104,7 +105,7 @@ def test_an_unknown_twist_of_the_upper_arm_leaves_the_elbow_where_it_is() -> Non
 
 
 def test_a_placement_and_its_inverse_lead_back() -> None:
-    there = Placement((1.0, -2.0, 3.0), turned((0.6, 0.0, 0.8), 0.7))
+    there = Placement((1.0, -2.0, 3.0), about((0.6, 0.0, 0.8), 0.7))
     assert there.inverse().at(there.at((0.3, 0.2, 0.1))) == pytest.approx((0.3, 0.2, 0.1))
     back = there.inverse().of(there)
     assert back.position_m == pytest.approx((0, 0, 0))
@@ -112,7 +113,7 @@ def test_a_placement_and_its_inverse_lead_back() -> None:
 
 
 def test_a_turn_is_right_handed() -> None:
-    assert rotated(turned((0, 0, 1), QUARTER), (1, 0, 0)) == pytest.approx((0, 1, 0))
+    assert rotated(about((0, 0, 1), QUARTER), (1, 0, 0)) == pytest.approx((0, 1, 0))
 
 
 @pytest.mark.parametrize("xyzw", [(0, 0, 0, 0), (0, 0, 0, 2), (math.nan, 0, 0, 1), (1, 1, 0, 0)])

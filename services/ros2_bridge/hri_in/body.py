@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from ros2_bridge.hri_in.body_joints import BODY, joints_of
 from ros2_bridge.hri_in.human_model import link_places
-from ros2_bridge.hri_in.placements import Vector
 from ros2_bridge.hri_in.transform_tree import HISTORY, TransformTree
+from ros2_bridge.rotations import Point
 
 
 class Found(NamedTuple):
@@ -18,7 +18,7 @@ class Found(NamedTuple):
         by_frames: whether they are frames of TF; otherwise the human model's, from angles of joints.
     """
 
-    joints: list[Vector | None]
+    joints: list[Point | None]
     by_frames: bool
 
     @property
@@ -58,7 +58,7 @@ class Body:
         None where neither is known at that instant.
         """
 
-        def framed(name: str) -> Vector | None:
+        def framed(name: str) -> Point | None:
             frame = f"{name}{self._suffix}"
             if not tree.knows(frame):
                 return None

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 
 from actum.skeletons import JOINTS
-from ros2_bridge.hri_in.placements import Vector
+from ros2_bridge.rotations import Point
 
-Places = Callable[[str], Vector | None]
+Places = Callable[[str], Point | None]
 """Where the frame of a body with a name lies (m), by the name without the body's id; None where that is unknown."""
 
 
@@ -39,7 +39,7 @@ BODY = "body"
 """The frame of human_description in the middle of the hips."""
 
 
-def joints_of(places: Places) -> list[Vector | None]:
+def joints_of(places: Places) -> list[Point | None]:
     """Return the joints (m) in our order, None where none of the joint's names has a place.
 
     The torso, where it has no frame, is the middle between the hips and the neck.
@@ -55,11 +55,11 @@ def joints_of(places: Places) -> list[Vector | None]:
     return [found[joint] for joint in JOINTS]
 
 
-def _first(places: Places, names: tuple[str, ...]) -> Vector | None:
+def _first(places: Places, names: tuple[str, ...]) -> Point | None:
     return next((place for name in names if (place := places(name)) is not None), None)
 
 
-def _middle(one: Vector | None, other: Vector | None) -> Vector | None:
+def _middle(one: Point | None, other: Point | None) -> Point | None:
     if one is None or other is None:
         return None
     return (one[0] + other[0]) / 2, (one[1] + other[1]) / 2, (one[2] + other[2]) / 2

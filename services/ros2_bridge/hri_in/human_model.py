@@ -9,7 +9,8 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from ros2_bridge.hri_in.placements import Placement, Vector, turned
+from ros2_bridge.hri_in.placements import Placement
+from ros2_bridge.rotations import Point, about
 
 HEIGHT_M = 1.65
 """Body height (m) that the model has by default, and with which ROS4HRI's detectors start it."""
@@ -48,9 +49,9 @@ class Link:
 
     name: str
     parent: str
-    origin_m: Vector
+    origin_m: Point
     joint: str | None = None
-    axis: Vector = (0.0, 0.0, 0.0)
+    axis: Point = (0.0, 0.0, 0.0)
 
 
 def _arm(side: str, out: int) -> Iterator[Link]:
@@ -86,7 +87,7 @@ LINKS: tuple[Link, ...] = (
 """The links in an order in which parents come first; the body is their root."""
 
 
-def link_places(angles_rad: Mapping[str, float]) -> dict[str, Vector]:
+def link_places(angles_rad: Mapping[str, float]) -> dict[str, Point]:
     """Return where links begin (m) in the body's frame, by their name; what no angles determine is left out.
 
     The middle of the trunk is among them, which is no link: it is on the body's z, by which the bridge places bodies.
@@ -103,7 +104,7 @@ def link_places(angles_rad: Mapping[str, float]) -> dict[str, Vector]:
             continue
         places[link.name] = parent.at(link.origin_m)
         if link.parent in placed and math.isfinite(angle_rad):
-            placed[link.name] = parent.of(Placement(link.origin_m, turned(link.axis, angle_rad)))
+            placed[link.name] = parent.of(Placement(link.origin_m, about(link.axis, angle_rad)))
         elif link.parent in placed and link.axis[:2] == (0, 0):  # an unknown twist about z leaves the end of a limb
             twisted[link.name] = parent.of(Placement(link.origin_m))
     return places

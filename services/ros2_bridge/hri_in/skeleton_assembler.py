@@ -7,8 +7,8 @@ from actum.messages import MOST_AGENTS, Agent, Joint, Skeleton
 from actum.node import Counters
 from actum.stamps import Order, StampGuard
 from ros2_bridge.hri_in.body import Body, Found
-from ros2_bridge.hri_in.placements import rotated
 from ros2_bridge.hri_in.transform_tree import TransformTree
+from ros2_bridge.rotations import rotated
 
 PATIENCE_NS = 100_000_000
 """How much newer (ns) the newest stamp may be before an image's skeleton is put although something of it is missing."""

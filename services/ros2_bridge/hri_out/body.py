@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from actum.arrays import Array
 from actum.skeletons import INDEX
 from ros2_bridge.frames import optical_from_body
-from ros2_bridge.hri_out.limbs import SIDES, Limb, Quaternion, Vector, arm, head, inverse, leg, product, rotated
+from ros2_bridge.hri_out.limbs import SIDES, Limb, arm, head, leg
+from ros2_bridge.rotations import Y_AXIS, Quaternion, Vector, about, inverse, product, rotated
 
 LINKS = {
     "torso": "neck",
@@ -56,7 +57,7 @@ def body_of(joints: Array) -> Body | None:
     placed[:3, 3] = hips
     at = dict(zip(LINKS, ((joints[_JOINT_OF_LINK] - hips) @ placed[:3, :3]).tolist(), strict=True))
     bend_rad = _waist(at["torso"])
-    trunk: Quaternion = (0.0, math.sin(bend_rad / 2), 0.0, math.cos(bend_rad / 2))
+    trunk: Quaternion = about(Y_AXIS, bend_rad)
     upper, legs = _upper_limbs(at, inverse(trunk)), _legs(at)
     turned = {name: product(trunk, quaternion) for limb in upper for name, quaternion in limb.turned.items()}
     turned |= {name: quaternion for limb in legs for name, quaternion in limb.turned.items()}

@@ -6,13 +6,20 @@ thigh, elbows and knees about -y, and the head about x and -y. Axes that the mod
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-Vector = Sequence[float]
-"""x, y, z."""
-Quaternion = tuple[float, float, float, float]
-"""x, y, z, w, a rotation from a link's axes to the body's."""
+from ros2_bridge.rotations import (
+    X_AXIS,
+    Y_AXIS,
+    Z_AXIS,
+    Quaternion,
+    Vector,
+    about,
+    dot,
+    inverse,
+    product,
+    rotated,
+)
 
 SIDES = {"l": 1.0, "r": -1.0}
 """The model's prefix of each side, and the sign of the axes that it mirrors (`reflect`)."""
@@ -40,7 +47,7 @@ def arm(side: str, upper: Vector | None, fore: Vector | None) -> Limb:
     if upper is None:
         return limb
     yaw, pitch = _shoulder(upper, sign)
-    shoulder = product(_about_z(-sign * yaw), _about_x(sign * pitch))
+    shoulder = product(about(Z_AXIS, -sign * yaw), about(X_AXIS, sign * pitch))
     limb.angles |= {f"{side}_y_shoulder": yaw, f"{side}_p_shoulder": pitch}
     if fore is not None:
         x, y, z = rotated(inverse(shoulder), fore)
@@ -48,9 +55,9 @@ def arm(side: str, upper: Vector | None, fore: Vector | None) -> Limb:
         if math.sin(bend) > LEAST_TWIST:
             twist = math.atan2(y, x)
             limb.angles[f"{side}_r_shoulder"] = sign * twist
-            shoulder = product(shoulder, _about_z(twist))
+            shoulder = product(shoulder, about(Z_AXIS, twist))
         limb.angles[f"{side}_elbow"] = bend
-        limb.turned |= dict.fromkeys((f"{side}_elbow", f"{side}_wrist"), product(shoulder, _about_y(-bend)))
+        limb.turned |= dict.fromkeys((f"{side}_elbow", f"{side}_wrist"), product(shoulder, about(Y_AXIS, -bend)))
     limb.turned[f"{side}_shoulder"] = shoulder
     return limb
 
@@ -79,12 +86,12 @@ def leg(side: str, thigh: Vector | None, shank: Vector | None) -> Limb:
     left = None if shank is None else _knee_axis(thigh, shank)
     yaw, pitch, roll = _hip(thigh, left)
     limb.angles |= {f"{side}_y_hip": -yaw, f"{side}_p_hip": sign * pitch, f"{side}_r_hip": -roll}
-    hip = product(product(_about_z(yaw), _about_x(pitch)), _about_y(roll))
+    hip = product(product(about(Z_AXIS, yaw), about(X_AXIS, pitch)), about(Y_AXIS, roll))
     limb.turned[f"{side}_hip"] = hip
     if shank is not None:
-        bend = math.acos(max(-1.0, min(1.0, _dot(thigh, shank)))) if left else 0.0
+        bend = math.acos(max(-1.0, min(1.0, dot(thigh, shank)))) if left else 0.0
         limb.angles[f"{side}_knee"] = -bend
-        limb.turned |= dict.fromkeys((f"{side}_knee", f"{side}_ankle"), product(hip, _about_y(bend)))
+        limb.turned |= dict.fromkeys((f"{side}_knee", f"{side}_ankle"), product(hip, about(Y_AXIS, bend)))
     return limb
 
 
@@ -112,48 +119,8 @@ def head(direction: Vector | None) -> Limb:
         x, y, z = direction
         roll, back = math.atan2(-y, z), -math.asin(max(-1.0, min(1.0, x)))
         limb.angles |= {"r_head": roll, "p_head": back}
-        limb.turned["head"] = product(_about_x(roll), _about_y(-back))
+        limb.turned["head"] = product(about(X_AXIS, roll), about(Y_AXIS, -back))
     return limb
-
-
-def product(one: Quaternion, other: Quaternion) -> Quaternion:
-    """Return the rotation `one` after `other`."""
-    ax, ay, az, aw = one
-    bx, by, bz, bw = other
-    return (
-        aw * bx + ax * bw + ay * bz - az * by,
-        aw * by - ax * bz + ay * bw + az * bx,
-        aw * bz + ax * by - ay * bx + az * bw,
-        aw * bw - ax * bx - ay * by - az * bz,
-    )
-
-
-def inverse(rotation: Quaternion) -> Quaternion:
-    """Return the rotation back."""
-    x, y, z, w = rotation
-    return -x, -y, -z, w
-
-
-def rotated(rotation: Quaternion, vector: Vector) -> Vector:
-    """Return a vector turned by a rotation."""
-    x, y, z = vector
-    return product(product(rotation, (x, y, z, 0.0)), inverse(rotation))[:3]
-
-
-def _about_x(angle_rad: float) -> Quaternion:
-    return math.sin(angle_rad / 2), 0.0, 0.0, math.cos(angle_rad / 2)
-
-
-def _about_y(angle_rad: float) -> Quaternion:
-    return 0.0, math.sin(angle_rad / 2), 0.0, math.cos(angle_rad / 2)
-
-
-def _about_z(angle_rad: float) -> Quaternion:
-    return 0.0, 0.0, math.sin(angle_rad / 2), math.cos(angle_rad / 2)
-
-
-def _dot(one: Vector, other: Vector) -> float:
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
 def _cross(one: Vector, other: Vector) -> Vector:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from actum.arrays import Array
 from actum.skeletons import INDEX
+from ros2_bridge.rotations import Vector, dot
 
 OTHER, STANDING, SITTING, CROUCHING, LAYING = range(5)
 """The constants of hri_msgs/BodyPosture."""
@@ -32,8 +33,6 @@ LOW_HIPS = 0.6
 _LEGS = [tuple(INDEX[f"{side}_{joint}"] for joint in ("hip", "knee", "foot")) for side in ("left", "right")]
 """Indices of hip, knee and foot, left and right."""
 
-Vector = Sequence[float]
-
 
 def posture_of(joints: Array, up_in_camera: Sequence[float] | None) -> int:
     """Return the constant of hri_msgs/BodyPosture for joints (15, 3; m, camera frame, NaN where unknown).
@@ -54,7 +53,7 @@ def _named(trunk: Vector, thigh: Vector, shank: Vector, up: Vector) -> int:
     """Return the posture of a trunk, and of the mean thigh and shank, as vectors from the hips up and down (m)."""
     down = [-each / math.hypot(*up) for each in up]
     tilt, hanging, bend = 180 - _angle_deg(trunk, down), _angle_deg(thigh, down), _angle_deg(thigh, shank)
-    hips = (_dot(thigh, down) + _dot(shank, down)) / max(math.hypot(*shank), 1e-6)
+    hips = (dot(thigh, down) + dot(shank, down)) / max(math.hypot(*shank), 1e-6)
     if tilt >= LYING_TRUNK_DEG:
         return LAYING if hips < LOW_HIPS and hanging >= HANGING_DEG else OTHER
     if tilt <= UPRIGHT_DEG and hanging <= HANGING_DEG and bend <= STRAIGHT_DEG:
@@ -69,11 +68,7 @@ def _named(trunk: Vector, thigh: Vector, shank: Vector, up: Vector) -> int:
 def _angle_deg(one: Vector, other: Vector) -> float:
     """Return the angle between two vectors (degrees)."""
     lengths = max(math.hypot(*one) * math.hypot(*other), 1e-9)
-    return math.degrees(math.acos(max(-1.0, min(1.0, _dot(one, other) / lengths))))
-
-
-def _dot(one: Vector, other: Vector) -> float:
-    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
+    return math.degrees(math.acos(max(-1.0, min(1.0, dot(one, other) / lengths))))
 
 
 def _between(start: Vector, end: Vector) -> Vector:
