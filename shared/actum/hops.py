@@ -22,8 +22,8 @@ SETTLING_NS = SECOND_NS
 MOST_WAITING = 4096
 """Causes of a hop that are remembered, and effects without one: of fifty people's postures nearly three seconds."""
 MOST_AHEAD_NS = SECOND_NS // 10
-"""An effect that another thread reads before its cause is at most so far ahead (ns); one further ahead had another cause,
-such as the answer to a mark that had no end for too long."""
+"""An effect that another thread reads before its cause is at most so far ahead (ns). One further ahead
+has another cause, such as the answer to a mark that had no end for too long."""
 SHORTEST_MS = 0.01
 """Delay (ms) below which all delays count as this: less than a clock's reading and a lock take."""
 STEP = 1.05

@@ -381,7 +381,9 @@ def test_arrays_that_are_too_short_are_refused_before_anything_is_read(call: Cal
         call()
 
 
-@pytest.mark.parametrize("activity", [None, (), (None, 0), ((), 0), ((ZEROS,), 0), ((ZEROS, None), 0), ((ZEROS, ZEROS),)])
+@pytest.mark.parametrize(
+    "activity", [None, (), (None, 0), ((), 0), ((ZEROS,), 0), ((ZEROS, None), 0), ((ZEROS, ZEROS),)]
+)
 def test_a_frame_without_its_sums_is_refused_before_anything_is_read(activity: object) -> None:
     cells = np.array([0.0, 1.0]), np.array([0], np.int32), np.array([1], np.int32)
     with pytest.raises((TypeError, SystemError, IndexError)):
