@@ -162,7 +162,7 @@ class SomClassifier:
         for answer in closed:  # of the session before, where this posture begins another
             yield self._final(answer)
         self._session = posture.session_id
-        if frame is not None and stream is not None:
+        if frame is not None and stream is not None and posture.agent:  # nobody's actions cannot be marked
             spotted = stream.search.step(frame)
             for found in spotted.segments:
                 yield from self._found(found, stream, posture.agent)
@@ -173,7 +173,7 @@ class SomClassifier:
     def _continued(self, stream: Stream, newest: Frame, posture: Posture) -> Iterator[Continuation]:
         """Say how the posture goes on, if somebody wants to know: that depends on postures alone, not on marks."""
         going_on = None if self._model is None else self._model.continuation
-        if not self.is_demanded or not posture.agent or not newest.valid or going_on is None:
+        if not self.is_demanded or not newest.valid or going_on is None:
             return
         frames = [frame for frame in stream.between(newest.stamp_ns - LOOKED_BACK_NS, newest.stamp_ns) if frame.valid]
         if not moves(frames):

@@ -167,7 +167,8 @@ class Segmenter:
         for segment in self._open.undecided(newest_ns):
             if segment.known_agent is None and segment.start_ns is not None:
                 segment.nearest = self.streams.nearest(segment.start_ns, segment.latest_ns)
-                self._open.sort()
+                if segment.nearest is not None:
+                    self._open.sort()
             agent = segment.known_agent
             reached = agent is not None and self.streams.reached(agent, segment.latest_ns)
             if segment.state is SegmentState.OPEN and segment.is_too_long(newest_ns):

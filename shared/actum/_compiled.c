@@ -219,6 +219,7 @@ static PyObject *pooled(PyObject *module, PyObject *args)
     return released(b, 7);
 }
 
+/* Each limb's spread (mm) over the frames between two sums of moments. */
 static void spreads_between(const int64_t *before, const int64_t *after, double *of)
 {
     for (int limb = 0; limb < LIMBS; limb++, before += MOMENTS, after += MOMENTS) {
@@ -262,6 +263,16 @@ static int add_rows(Room *room, Py_ssize_t k, const Py_buffer *sums, const Py_bu
     return 0;
 }
 
+/* Find the memory of an array of a run, which keeps it; -1 where an error is set. */
+static int take_array(PyObject *run, Py_ssize_t number, Py_buffer *array)
+{
+    PyObject *item = PyTuple_GetItem(run, number);
+    if (item == NULL || PyObject_GetBuffer(item, array, PyBUF_SIMPLE) < 0)
+        return -1;
+    PyBuffer_Release(array);
+    return 0;
+}
+
 /* Find the sums before, between and after frames by their activities: a run, and the row before the frame. The list
    keeps the runs, so their buffers need not be held. -1 where an error is set. */
 static int find_rows(Room *room, PyObject *activities, Py_ssize_t units)
@@ -270,18 +281,13 @@ static int find_rows(Room *room, PyObject *activities, Py_ssize_t units)
     Py_buffer sums, totals;
     for (Py_ssize_t k = 0; k < PyList_Size(activities); k++) {
         PyObject *activity = PyList_GetItem(activities, k), *next = PyTuple_GetItem(activity, 0);
-        Py_ssize_t row = next == NULL ? -1 : PyLong_AsSsize_t(PyTuple_GetItem(activity, 1));
+        PyObject *before = next == NULL ? NULL : PyTuple_GetItem(activity, 1);
+        Py_ssize_t row = before == NULL ? -1 : PyLong_AsSsize_t(before);
         if (PyErr_Occurred())
             return -1;
-        if (next != run) {
-            if (PyObject_GetBuffer(PyTuple_GetItem(next, 0), &sums, PyBUF_SIMPLE) < 0)
-                return -1;
-            PyBuffer_Release(&sums);
-            if (PyObject_GetBuffer(PyTuple_GetItem(next, 1), &totals, PyBUF_SIMPLE) < 0)
-                return -1;
-            PyBuffer_Release(&totals);
-            run = next;
-        }
+        if (next != run && (take_array(next, 0, &sums) < 0 || take_array(next, 1, &totals) < 0))
+            return -1;
+        run = next;
         if ((k == 0 && add_rows(room, 0, &sums, &totals, row, units) < 0)
             || add_rows(room, k + 1, &sums, &totals, row + 1, units) < 0)
             return -1;
@@ -321,6 +327,7 @@ static PyObject *pooled_windows(PyObject *module, PyObject *args)
     leave(&room);
     return released(b, 4);
 }
+
 /* NumPy's pairwise sum of contiguous numbers. */
 static float pairwise_sum(const float *x, Py_ssize_t n)
 {
@@ -950,7 +957,6 @@ static PyObject *posture(PyObject *module, PyObject *args)
     return Py_BuildValue("NNNNN", lists[0], lists[1], lists[2], lists[3], lists[4]);
 }
 
-/* Each limb's spread (mm) over the frames between two sums of moments. */
 PyDoc_STRVAR(spreads_doc,
     "spreads(before, after) -> list\n--\n\n"
     "Return each limb's spread (mm) over the frames between two sums of moments.");

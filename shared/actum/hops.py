@@ -21,6 +21,9 @@ SETTLING_NS = SECOND_NS
 """After the first message so long (ns) nothing is measured: what publishers have kept of before comes all at once."""
 MOST_WAITING = 4096
 """Causes of a hop that are remembered, and effects without one: of fifty people's postures nearly three seconds."""
+MOST_AHEAD_NS = SECOND_NS // 10
+"""An effect that another thread reads before its cause is at most so far ahead (ns). One further ahead
+has another cause, such as the answer to a mark that had no end for too long."""
 SHORTEST_MS = 0.01
 """Delay (ms) below which all delays count as this: less than a clock's reading and a lock take."""
 STEP = 1.05
@@ -102,9 +105,10 @@ class Hops:
                 self._followed(hop, hop.shared(message), now_ns)
 
     def _caused(self, hop: Hop, shared: Hashable, now_ns: int) -> None:
-        """Remember a cause; an effect that was read before it, by another thread, has taken no time."""
+        """Remember a cause; an effect that was read just before it, by another thread, has taken no time."""
         _remember(self._caused_ns[hop], shared, now_ns)
-        if self._early_ns[hop].pop(shared, None) is not None:
+        early_ns = self._early_ns[hop].pop(shared, None)
+        if early_ns is not None and now_ns - early_ns <= MOST_AHEAD_NS:
             self._delays[hop].add(0, now_ns)
 
     def _followed(self, hop: Hop, shared: Hashable, now_ns: int) -> None:

@@ -6,6 +6,8 @@ from itertools import pairwise
 import pytest
 
 from action_fusion.node import ActionFusion
+from action_fusion.settings import Settings
+from actum.limits import MOST_STREAMS
 from actum.messages import Event, Intent, Message, Posture
 from actum.node import SECOND_NS
 from fused import events_of, intents_of
@@ -100,6 +102,17 @@ def test_a_source_that_begins_anew_is_foreseen_anew(node: ActionFusion) -> None:
     ]
     second = intents_of(node, *again)
     assert [intent.intended for intent in second] == [intent.intended for intent in first]
+
+
+def test_somebody_whose_stream_was_forgotten_and_who_comes_back_with_older_stamps_is_foreseen_anew(
+    node: ActionFusion,
+) -> None:
+    """So many people without a usable posture come between that the stream of the first is forgotten."""
+    first = intents_of(ActionFusion(Settings()), *stream(end_s=0.75))
+    day_ahead = REACH.posture(1.0).model_copy(update={"stamp_ns": at(1.0) + 86_400 * SECOND_NS})
+    crowd = [REACH.posture(-0.6, agent=2 + n, valid=False, reason="no torso") for n in range(MOST_STREAMS)]
+    again = intents_of(node, day_ahead, *crowd, *stream(end_s=0.75))
+    assert [intent.intended for intent in again] == [intent.intended for intent in first] != []
 
 
 def test_the_event_of_a_foreseen_action_is_the_one_without_intents(node: ActionFusion) -> None:

@@ -103,6 +103,14 @@ def test_an_effect_that_is_read_before_its_cause_by_another_thread_has_taken_no_
     assert (found.count, found.p99_ms) == (1, SHORTEST_MS)
 
 
+def test_an_end_mark_that_comes_long_after_its_segment_was_answered_has_not_caused_the_answer(
+    receiving: Receiving,
+) -> None:
+    receiving.receive(action(1, 9))
+    receiving.receive(mark("end", 9), after_ms=5_000)
+    assert receiving.times() == {}
+
+
 def test_the_end_of_a_segment_that_the_classifier_found_is_no_cause(receiving: Receiving) -> None:
     receiving.receive(mark("end", 9, origin=AUTO))
     receiving.receive(action(1, 9), after_ms=5)

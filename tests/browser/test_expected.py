@@ -34,7 +34,8 @@ def bodies(page: Any, **fields: Any) -> list[Any]:
 
 
 def ways_of_hands(page: Any, probability: float, **fields: Any) -> list[Any]:
-    message = intent(SECOND_NS, contact(probability), session_id="test").model_copy(update=fields)
+    coming = contact(probability / 2, soon_probability=probability)
+    message = intent(SECOND_NS, coming, session_id="test").model_copy(update=fields)
     return page.evaluate(DRAWN, ["waysOfHands", NOW.model_dump(), [message.model_dump()]])
 
 
@@ -56,6 +57,7 @@ def test_what_is_late_or_of_another_person_or_run_is_not_drawn(fields: dict[str,
 
 def test_a_hand_goes_to_the_place_of_a_likely_contact(page: Any) -> None:
     assert ways_of_hands(page, 0.9) == [[pytest.approx(HAND_M), [0.1, 0.2, 1.5]]]
+    assert ways_of_hands(page, 0.4) != [], "one of two things that are as likely"
     assert ways_of_hands(page, 0.2) == []
     assert ways_of_hands(page, 0.9, intended=[]) == []
 

@@ -381,6 +381,15 @@ def test_arrays_that_are_too_short_are_refused_before_anything_is_read(call: Cal
         call()
 
 
+@pytest.mark.parametrize(
+    "activity", [None, (), (None, 0), ((), 0), ((ZEROS,), 0), ((ZEROS, None), 0), ((ZEROS, ZEROS),)]
+)
+def test_a_frame_without_its_sums_is_refused_before_anything_is_read(activity: object) -> None:
+    cells = np.array([0.0, 1.0]), np.array([0], np.int32), np.array([1], np.int32)
+    with pytest.raises((TypeError, SystemError, IndexError)):
+        steps.pooled_windows([activity], [0], True, 1.0, 1.0, *cells, 1.0, np.empty(3, np.float32))
+
+
 def test_a_coordinate_that_is_no_plain_number_is_refused() -> None:
     class Odd:
         def __float__(self) -> float:

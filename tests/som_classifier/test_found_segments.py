@@ -91,6 +91,12 @@ def test_a_found_segment_is_marked_by_start_and_end_and_then_answered_as_any_mar
     assert node.counters.counts == {"found": 1, "told": 1}
 
 
+def test_in_valid_postures_of_nobody_nothing_is_found() -> None:
+    node = SomClassifier(finding(tiny_model(), LIFT))
+    assert put_by(node, [each.model_copy(update={"agent": 0, "agents": []}) for each in stream()]) == []
+    assert node.counters.counts == {}
+
+
 def test_while_it_goes_on_partial_actions_say_how_far_it_is_under_the_id_that_it_will_have() -> None:
     put = put_by(SomClassifier(finding(tiny_model(), LIFT, PUSH)), stream())
     finals = [m for m in put if isinstance(m, Action) and m.final]

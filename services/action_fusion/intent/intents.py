@@ -87,10 +87,13 @@ class Intents:
         self._people: OrderedDict[int, Person] = OrderedDict()
 
     def posture(self, sample: PostureSample, agent: int, sensor: str) -> Intent | None:
-        """Return the intent after a valid posture; None where no reach is under way and none has just ended."""
+        """Return the intent after a valid posture; None where no reach is under way and none has just ended.
+
+        A posture of another session, or one that is older than the newest, begins a person anew.
+        """
         assert sample.body is not None
         person = self._person(agent)
-        if person.session_id != sample.session_id:
+        if person.session_id != sample.session_id or sample.stamp_ns <= person.arms.newest_ns:
             person = self._people[agent] = Person(sample.session_id)
         person.arms.append(sample.stamp_ns, arms_of(sample.body))
         ongoing = person.ongoing(sample.stamp_ns)

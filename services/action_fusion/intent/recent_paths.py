@@ -43,9 +43,14 @@ class RecentArms:
         self._stamps, self._joints = Columns(np.int64), Columns(np.float64, len(ARMS), 3)
         self._count = 0
 
+    @property
+    def newest_ns(self) -> int:
+        """Stamp of the newest posture, -1 where there is none."""
+        return int(self._stamps.newest(1)[0]) if self._count else -1
+
     def append(self, stamp_ns: int, joints_m: Array) -> None:
         """Add the joints of the next posture, (joints, 3) in the order of `ARMS`; NaN where one is unknown."""
-        if self._count and stamp_ns - int(self._stamps.newest(1)[0]) > LONGEST_GAP_NS:
+        if self._count and stamp_ns - self.newest_ns > LONGEST_GAP_NS:
             self._count = 0
         self._count = min(self._count + 1, LATEST_ROWS)
         self._stamps.append(stamp_ns, self._count)

@@ -35,7 +35,7 @@ export function bodiesAhead(skeleton, continuations = newest.continuation) {
 export function waysOfHands(skeleton, intents = newest.intent) {
   return skeleton.agents.flatMap(({ agent, joints }) => {
     const intent = intents.get(agent);
-    const likeliest = isCurrent(skeleton, intent) ? intent.intended.find(({ probability }) => probability >= LEAST) : undefined;
+    const likeliest = isCurrent(skeleton, intent) ? intent.intended.find(({ soon_probability: soon }) => soon >= LEAST) : undefined;
     if (!likeliest) return [];
     const hand = joints[likeliest.hand === "left" ? JOINT.leftHand : JOINT.rightHand];
     return hand ? [[hand, likeliest.place_m]] : [];
