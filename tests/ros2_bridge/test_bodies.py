@@ -1,7 +1,7 @@
 """Bodies of ROS4HRI become skeletons: who, where, when, in which frame, and what is refused."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -240,6 +240,27 @@ def test_whoever_is_a_little_late_is_waited_for() -> None:
             tf(*frames(before_ns, there["slow"], "slow")),
         ])  # fmt: skip
     assert [len(skeleton.agents) for skeleton in found[-10:]] == [2] * 10
+
+
+@pytest.mark.parametrize(
+    "newer",
+    [
+        lambda stamp_ns: tracked(stamp_ns, "1"),
+        lambda stamp_ns: tf(transform(stamp_ns, "wheel_1", (0, 0, 0), parent="base_link")),
+    ],
+    ids=["list", "frame of the robot"],
+)
+def test_joints_are_used_though_lists_and_frames_of_the_robot_are_far_newer(newer: Callable[[int], Foreign]) -> None:
+    """A slow detector, such as hri_fullbody, may depend on the list of a fast one."""
+    made = bridge()
+    found = given_to(made, (
+        each for stamp_ns in stamps(30)
+        for each in (
+            tracked(stamp_ns, "1"), newer(stamp_ns + 200_000_000), newer(stamp_ns + 210_000_000),
+            tf(*frames(stamp_ns, STANDING, "1")),
+        )
+    ))  # fmt: skip
+    assert [it.stamp_ns for it in found] == stamps(30)
 
 
 def test_a_body_that_has_points_in_the_image_alone_gives_no_skeleton_and_the_state_says_what_to_do() -> None:

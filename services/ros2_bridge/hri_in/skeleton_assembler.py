@@ -1,7 +1,7 @@
 """Puts together, from what comes about each body and in any order, one skeleton message for each captured image."""
 
 from collections import OrderedDict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from actum.messages import MOST_AGENTS, Agent, Joint, Skeleton
 from actum.node import Counters
@@ -49,23 +49,30 @@ class SkeletonAssembler:
         return next((body_id for body_id in self.bodies if frame.endswith(f"_{body_id}")), None)
 
     def advance(self, stamp_ns: int, ids: Sequence[str]) -> Iterator[Skeleton]:
-        """Look again at bodies of which something new is known at a stamp, and yield the skeletons that are due."""
+        """Look again at bodies of which something new is known at a stamp, and yield the skeletons that are due.
+
+        A stamp at which no joints of bodies are known begins no image: a list of bodies, or a frame whose name only
+        looks like a body's, may be newer than the joints that come next.
+        """
+        bodies = {body_id: self.bodies[body_id] for body_id in ids if body_id in self.bodies}
+        found = {body_id: body.find(self.tree, stamp_ns) for body_id, body in bodies.items()}
+        known = {body_id: joints for body_id, joints in found.items() if joints is not None}
+        if known or not self.bodies:
+            yield from self._take(stamp_ns, known)
+
+    def _take(self, stamp_ns: int, found: dict[str, Found]) -> Iterator[Skeleton]:
+        """Add joints of bodies to the skeleton of a stamp, and yield the skeletons that are due."""
         if self._has_restarted(stamp_ns):
             self._begin_anew()
-        bodies = [(body_id, self.bodies[body_id]) for body_id in ids if body_id in self.bodies]
         if stamp_ns <= self._newest_put_ns:
-            self._note_late([body for _, body in bodies], stamp_ns)
+            self._note_late(found, stamp_ns)
             return
-        found = self._open.setdefault(stamp_ns, {})
-        for body_id, body in bodies:
-            joints = body.find(self.tree, stamp_ns)
-            if joints is not None:
-                found[body_id] = joints
+        self._open.setdefault(stamp_ns, {}).update(found)
         yield from self._due()
 
-    def _note_late(self, bodies: Sequence[Body], stamp_ns: int) -> None:
+    def _note_late(self, ids: Iterable[str], stamp_ns: int) -> None:
         """Count bodies that a skeleton did without; one that is late by little is waited for from now on."""
-        for body in bodies:
+        for body in (self.bodies[body_id] for body_id in ids):
             if not body.is_awaited:
                 self._counters.counts[LATE] += 1
                 body.is_awaited = stamp_ns > self._newest_put_ns - PATIENCE_NS
@@ -78,14 +85,18 @@ class SkeletonAssembler:
         return self._order.judge(stamp_ns) is Order.RESTART
 
     def _due(self) -> Iterator[Skeleton]:
-        """Yield the skeletons up to the newest whole one, and those that are overdue, in the order of their stamps."""
-        newest_ns = max(self._open)
-        overdue_ns = newest_ns - PATIENCE_NS
+        """Yield the skeletons that are due, after which others may be whole, in the order of their stamps."""
+        while due := self._due_stamps():
+            for stamp_ns in due:
+                yield from self._skeleton(stamp_ns, self._open.pop(stamp_ns))
+
+    def _due_stamps(self) -> list[int]:
+        """Return the stamps up to the newest of a whole skeleton, and those that are overdue or too many."""
+        overdue_ns = max(self._open, default=0) - PATIENCE_NS
         whole_ns = max((stamp_ns for stamp_ns in self._open if self._is_whole(stamp_ns)), default=-1)
         spare = len(self._open) - MOST_OPEN
-        for i, stamp_ns in enumerate(sorted(self._open)):
-            if stamp_ns <= max(overdue_ns, whole_ns) or i < spare:
-                yield from self._skeleton(stamp_ns, self._open.pop(stamp_ns))
+        waiting = enumerate(sorted(self._open))
+        return [stamp_ns for i, stamp_ns in waiting if stamp_ns <= max(overdue_ns, whole_ns) or i < spare]
 
     def _is_whole(self, stamp_ns: int) -> bool:
         found = self._open[stamp_ns]
