@@ -317,6 +317,13 @@ def test_a_recording_that_is_played_again_is_a_new_run_in_which_numbers_go_on() 
     assert {agent.agent for it in again for agent in it.agents} == {2}
 
 
+def test_a_short_recording_that_is_played_in_a_loop_gives_skeletons_each_time() -> None:
+    made = bridge()
+    runs = [stream(made, {"ab": STANDING}, count=90) for _ in range(3)]
+    assert [len(run) >= 85 for run in runs] == [True] * 3
+    assert [run[-1].session_id for run in runs] == ["ros2-5e55.0", "ros2-5e55.1", "ros2-5e55.2"]
+
+
 def test_one_stamp_of_the_future_does_not_end_the_stream() -> None:
     made = bridge()
     stream(made, {"ab": STANDING})

@@ -4,7 +4,7 @@ from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Sequence
 
 from actum.messages import MOST_AGENTS, Agent, Joint, Skeleton
-from actum.node import Counters
+from actum.node import SECOND_NS, Counters
 from actum.stamps import Order, StampGuard
 from ros2_bridge.hri_in.body import Body, Found
 from ros2_bridge.hri_in.placements import rotated
@@ -12,6 +12,9 @@ from ros2_bridge.hri_in.transform_tree import TransformTree
 
 PATIENCE_NS = 100_000_000
 """How much newer (ns) the newest stamp may be before an image's skeleton is put although something of it is missing."""
+RESTARTED_NS = 2 * SECOND_NS
+"""How far (ns) the stamps of bodies step back where time begins anew. Recordings of some seconds that are played in a
+loop, simulations that are reset, and clocks that are set give nothing that names the new run."""
 MOST_OPEN = 32
 """Most images whose skeletons wait for more: a third of a second at 100 Hz."""
 MOST_NUMBERED = 4096
@@ -33,7 +36,7 @@ class SkeletonAssembler:
         self._sensor, self._optical_frame, self._counters = sensor, optical_frame, counters
         self._numbers: OrderedDict[str, int] = OrderedDict()
         self._highest_number = self._runs = 0
-        self._order = StampGuard()
+        self._order = StampGuard(RESTARTED_NS)
         self._open: dict[int, dict[str, Found]] = {}
         self._newest_put_ns = self._judged_ns = -1
 
