@@ -1,6 +1,8 @@
 """Bodies of ROS4HRI become skeletons: who, where, when, in which frame, and what is refused."""
 
+import gc
 import math
+import tracemalloc
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -34,8 +36,9 @@ from ros2_bodies import (
 )
 from ros2_bridge import topics
 from ros2_bridge.bridge import Ros2Bridge
+from ros2_bridge.hri_in.body_reader import LONGEST_NAME
 from ros2_bridge.hri_in.human_model import FOREARM_M, LINKS, TORSO_M, UPPER_ARM_M
-from ros2_bridge.hri_in.transform_tree import MOST_FRAMES
+from ros2_bridge.hri_in.transform_tree import HISTORY, MOST_FRAMES
 from ros2_bridge.settings import Settings
 
 FIRST_NS = 1_700_000_000 * SECOND_NS
@@ -339,6 +342,8 @@ def test_one_stamp_of_the_future_does_not_end_the_stream() -> None:
         (Foreign(topics.OTHERS_TF.name, b"\x00\x01\x00\x00" + bytes(300_000), ""), "bad_body_message"),
         (tf(transform(FIRST_NS, "head_ab", (math.nan, 0, 0))), "bad_transform"),
         (tf(transform(FIRST_NS, "head_ab", (0, 0, 0), (0, 0, 0, 0))), "bad_transform"),
+        (tf(transform(FIRST_NS, "f" * (LONGEST_NAME + 1), (0, 0, 0))), "bad_transform"),
+        (tf_static(transform(0, "f", (0, 0, 0), parent="p" * (LONGEST_NAME + 1))), "bad_transform"),
         (tf(transform(0, "head_ab", (0, 0, 0))), "bad_body_stamp"),
         (tracked(0, "ab"), "bad_body_stamp"),
         (tracked(FIRST_NS, "a/b"), "bad_body_id"),
@@ -364,6 +369,20 @@ def test_transforms_in_a_circle_lead_nowhere() -> None:
         ))
     ))  # fmt: skip
     assert found == []
+
+
+def test_names_that_are_no_joints_of_the_model_are_not_kept() -> None:
+    made = bridge()
+    given_to(made, [tracked(FIRST_NS, *(f"b{i}" for i in range(MOST_AGENTS)))])
+    names = {f"j{i}": 0.0 for i in range(4000)}
+    payloads = [joint_states(stamp_ns, "b0", names) for stamp_ns in stamps(HISTORY)]
+    gc.collect()
+    tracemalloc.start()
+    given_to(made, payloads)
+    gc.collect()
+    kept_bytes, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert kept_bytes < 100_000
 
 
 def test_frames_without_end_are_forgotten_and_the_way_to_the_camera_is_not() -> None:

@@ -19,6 +19,8 @@ MOST_BYTES = 250_000
 """A longer payload is not read (bytes): two thousand transforms."""
 FURTHEST_M = 1e6
 """Largest coordinate of a frame in its parent (m): maps of cities are larger than rooms, and nothing is further."""
+LONGEST_NAME = 256
+"""Most characters of a frame's name: thousands of names are kept."""
 BODY_ID = re.compile(r"[A-Za-z0-9_]{1,64}")
 """The id of a body: it is part of the names of topics."""
 REVIEW_NS = 2 * SECOND_NS
@@ -160,7 +162,12 @@ class BodyReader:
         return None
 
     def _edge(self, transform: Any) -> Edge | None:
-        """Return a transform; None, and count it, where it is no rigid one."""
+        """Return a transform; None, and count it, where it is no rigid one or the frames' names are too long."""
+        lengths = len(transform.child_frame_id), len(transform.header.frame_id)
+        if max(lengths) > LONGEST_NAME:
+            detail = f"the names of the frame and its parent have {lengths[0]} and {lengths[1]} characters"
+            self._counters.reject("bad_transform", f"{detail}; at most {LONGEST_NAME} are allowed")
+            return None
         at, turn = transform.transform.translation, transform.transform.rotation
         placed = placement((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w), FURTHEST_M)
         if placed is None:
