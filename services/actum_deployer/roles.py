@@ -60,8 +60,14 @@ ROS_TOPICS = (
 """
 ROS_MARKS = (f"{BASE}/{{}}/mark",)
 """What it subscribes to."""
-ROS_BODIES = ("humans/bodies", "tf", "tf_static")
-"""What it also subscribes to where the bodies that ROS 2 nodes track become skeletons; it publishes there, too."""
+ROS_BODIES = (
+    *("humans/bodies/tracked", "humans/bodies/*/joint_states", "humans/bodies/*/skeleton2d"),
+    *("tf", "tf_static"),
+)
+"""What it also subscribes to where the bodies that ROS 2 nodes track become skeletons; it publishes there, too.
+
+Pictures of bodies, which detectors publish as well, are not among them: images stay on their host.
+"""
 GATEWAY = Role(
     "gateway",
     "a sensor's gateway, or the simulated scene",

@@ -216,6 +216,12 @@ def test_bodies_are_put_by_detectors_and_read_by_the_bridge_that_makes_skeletons
                 assert not any(zenoh.KeyExpr(each).intersects(key) for each in allowed(role, flow, "put", 7)), topic.key
 
 
+def test_detectors_put_no_pictures_of_people_which_would_cross_between_hosts() -> None:
+    picture = zenoh.KeyExpr("7/humans/bodies/ab/cropped/type/hash")
+    assert not any(zenoh.KeyExpr(each).intersects(picture) for each in allowed(DETECTOR, "ingress", "put", 7))
+    assert not any(zenoh.KeyExpr(each).intersects(picture) for each in allowed(BODIES_BRIDGE, "egress", "put", 7))
+
+
 @pytest.mark.parametrize("role", [ROBOT, DETECTOR], ids=lambda role: role.name)
 def test_ros_nodes_have_nothing_of_ours_and_without_a_bridge_nothing_at_all(role: Role) -> None:
     every = {each for rule in rules(role, "", 0) for each in rule["key_exprs"]}
