@@ -253,7 +253,7 @@ OF_BRIDGE: Mapping[str, Problem] = {
         "Check the body detector.",
     ),
     "bad_body_stamp": Problem(
-        "A transform, or a message about bodies, has no stamp; it is not used.",
+        "A transform, or a message about bodies, has no stamp; it is not used, but for the ids of a list of bodies.",
         "Set `header.stamp` to the time at which the image was captured.",
     ),
     "bad_transform": Problem(

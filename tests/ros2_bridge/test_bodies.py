@@ -266,6 +266,15 @@ def test_joints_are_used_though_lists_and_frames_of_the_robot_are_far_newer(newe
     assert [it.stamp_ns for it in found] == stamps(30)
 
 
+def test_bodies_are_known_also_by_lists_without_a_stamp_which_libhri_does_not_read() -> None:
+    made = bridge()
+    found = given_to(made, (
+        each for stamp_ns in stamps(10) for each in (tracked(0, "ab"), tf(*frames(stamp_ns, STANDING, "ab")))
+    ))  # fmt: skip
+    assert [it.stamp_ns for it in found] == stamps(10)
+    assert given_to(made, [tracked(0), tf(*frames(stamps(11)[-1], STANDING, "ab"))]) == []
+
+
 def test_a_body_that_has_points_in_the_image_alone_gives_no_skeleton_and_the_state_says_what_to_do() -> None:
     made = bridge()
     found = given_to(made, (

@@ -114,9 +114,7 @@ class BodyReader:
         for bad in (each for each in message.ids if not BODY_ID.fullmatch(each)):
             self._counters.reject("bad_body_id", f"{bad!r}: letters, digits and '_' are allowed, 64 at most")
         ids = list(dict.fromkeys(each for each in message.ids if BODY_ID.fullmatch(each)))
-        stamp_ns = self._stamp_ns(message.header)
-        if stamp_ns is not None:
-            yield from self._assembler.track(stamp_ns, ids)
+        yield from self._assembler.track(self._stamp_ns(message.header), ids)
 
     def _transforms(self, message: Any, _foreign: Foreign) -> Iterator[Skeleton]:
         touched: dict[int, dict[str, None]] = {}

@@ -40,12 +40,16 @@ class SkeletonAssembler:
         self._open: dict[int, dict[str, Found]] = {}
         self._newest_put_ns = self._judged_ns = -1
 
-    def track(self, stamp_ns: int, ids: Sequence[str]) -> Iterator[Skeleton]:
-        """Note who is there from now on, and yield the skeletons that are due."""
+    def track(self, stamp_ns: int | None, ids: Sequence[str]) -> Iterator[Skeleton]:
+        """Note who is there from now on, and yield the skeletons that are due.
+
+        Without a stamp, a list of nobody gives no skeleton.
+        """
         if len(ids) > MOST_AGENTS:
             self._counters.reject("too_many_bodies", f"{len(ids)} bodies; the first {MOST_AGENTS} are used")
         self.bodies = {each: self.bodies.get(each) or self._body(each) for each in ids[:MOST_AGENTS]}
-        yield from self.advance(stamp_ns, ids)
+        if stamp_ns is not None:
+            yield from self.advance(stamp_ns, ids)
 
     def owner(self, frame: str) -> str | None:
         """Return the id of the tracked body to which a frame belongs by its name; None where it is no body's."""
