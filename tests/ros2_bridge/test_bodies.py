@@ -199,6 +199,18 @@ def test_everybody_who_is_tracked_stands_in_one_skeleton_though_they_come_apart(
     assert [[agent.agent for agent in skeleton.agents] for skeleton in found] == [[1, 2]] * 8
 
 
+def test_ids_of_which_one_ends_in_the_other_are_told_apart() -> None:
+    there = {"1": STANDING, "left_1": BESIDE}
+    found = given_to(bridge(), (
+        each for stamp_ns in stamps(8)
+        for each in (
+            tracked(stamp_ns, *there),
+            *(tf(*frames(stamp_ns, body, body_id)) for body_id, body in there.items()),
+        )
+    ))  # fmt: skip
+    assert [[agent.agent for agent in skeleton.agents] for skeleton in found] == [[1, 2]] * 8
+
+
 def test_numbers_of_people_are_never_used_again_and_a_body_that_comes_back_has_its_own() -> None:
     made = bridge()
     numbers = []

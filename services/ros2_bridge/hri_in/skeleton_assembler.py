@@ -52,8 +52,11 @@ class SkeletonAssembler:
             yield from self.advance(stamp_ns, ids)
 
     def owner(self, frame: str) -> str | None:
-        """Return the id of the tracked body to which a frame belongs by its name; None where it is no body's."""
-        return next((body_id for body_id in self.bodies if frame.endswith(f"_{body_id}")), None)
+        """Return the id of the tracked body to which a frame belongs by its name; None where it is no body's.
+
+        Of ids of which one ends in the other, such as `left_1` and `1`, it is the longer.
+        """
+        return max((body_id for body_id in self.bodies if frame.endswith(f"_{body_id}")), key=len, default=None)
 
     def advance(self, stamp_ns: int, ids: Sequence[str]) -> Iterator[Skeleton]:
         """Look again at bodies of which something new is known at a stamp, and yield the skeletons that are due.
