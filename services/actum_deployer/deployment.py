@@ -48,6 +48,8 @@ HOST_NAME = re.compile(
     r"(?=.{1,253}$)(?!-)[A-Za-z0-9_-]{1,63}(?<!-)(\.(?!-)[A-Za-z0-9_-]{1,63}(?<!-))*(?<!\.)", re.ASCII
 )
 """A host's name that a certificate may hold: labels of ASCII letters, digits, hyphens and underscores."""
+FRAME = re.compile(r"[A-Za-z0-9_./-]{1,200}", re.ASCII)
+"""A frame's name that systemd's units and compose files hold as it is."""
 NUMERIC = re.compile(r"(.*\.)?[0-9]+")
 """What is no name but an address of IPv4, or none that can be: its last label is a number."""
 
