@@ -147,6 +147,12 @@ def test_up_is_the_z_axis_of_the_root_of_the_robots_tree() -> None:
     assert stream(made, {"ab": STANDING})[-1].up_in_camera == pytest.approx([0, 1, 0], abs=1e-9)
 
 
+def test_the_cameras_frame_is_the_same_with_a_slash_before_it() -> None:
+    made = Ros2Bridge(Settings(sensor="head", ros_bodies=True, ros_frame_id=f"/{OPTICAL}"))
+    made.foreign_node("5e55")
+    assert len(stream(made, {"ab": STANDING})) == 6
+
+
 def test_a_camera_without_a_robot_is_taken_for_level() -> None:
     assert stream(bridge(), {"ab": STANDING})[-1].up_in_camera is None
 

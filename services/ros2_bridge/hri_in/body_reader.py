@@ -43,8 +43,8 @@ class BodyReader:
     """
 
     def __init__(self, sensor: str, optical_frame: str, counters: Counters) -> None:
-        self._counters, self._optical_frame = counters, optical_frame
-        self._assembler = SkeletonAssembler(sensor, optical_frame, counters)
+        self._counters, self._optical_frame = counters, _frame(optical_frame)
+        self._assembler = SkeletonAssembler(sensor, self._optical_frame, counters)
         self._tree = self._assembler.tree
         self._was_told_ids = self._heard = False
         self._reviewed_ns: int | None = None
