@@ -260,12 +260,12 @@ OF_BRIDGE: Mapping[str, Problem] = {
         "Check the body detector.",
     ),
     "bad_body_stamp": Problem(
-        "A transform, or a message about bodies, has no stamp; it is not used.",
+        "A transform, or a message about bodies, has no stamp; it is not used, but for the ids of a list of bodies.",
         "Set `header.stamp` to the time at which the image was captured.",
     ),
     "bad_transform": Problem(
-        "A transform has a number that is not finite, a translation of over 1,000 km, or a quaternion whose length is "
-        "not 1; it is not used.",
+        "A transform has a number that is not finite, a translation of over 1,000 km, a quaternion whose length is "
+        "not 1, or a frame's name of more than 256 characters; it is not used.",
         "Correct the node that publishes this frame; the latest error names the frame.",
     ),
 }

@@ -1,6 +1,7 @@
 """A deployment: its hosts, what runs on each, and how strictly they are closed. Kept as a file without secrets."""
 
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
@@ -21,6 +22,8 @@ ROUTERS_CANNOT = (
 """Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""
 FILE = "deployment.json"
 """The name of the file in the deployment's folder."""
+FRAME = re.compile(r"[A-Za-z0-9_./-]{1,200}", re.ASCII)
+"""A frame's name that systemd's units and compose files hold as it is."""
 
 
 @dataclass(frozen=True)

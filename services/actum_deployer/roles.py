@@ -50,18 +50,27 @@ class Role:
         return bool(self.ros_puts)
 
 
-ROS_TOPICS = (
+ROS_WITHOUT_PEOPLE = (
     *(f"{BASE}/{{}}/{name}" for name in ("skeletons", "objects", "event", "event_json", "intent")),
-    *("tf", "tf_static", "intents", "humans"),
+    *("tf", "tf_static", "intents"),
 )
-"""What the bridge publishes on ROS 2's keys, below a domain, in the namespace that it has unless it is told another.
+"""What the bridge publishes on ROS 2's keys, below a domain, in the namespace that it has unless it is told another,
+where others publish the bodies."""
+ROS_TOPICS = (*ROS_WITHOUT_PEOPLE, "humans")
+"""What it publishes where it publishes bodies and persons, too.
 
 `humans` stands for all topics of ROS4HRI below it, which come and go with the people.
 """
 ROS_MARKS = (f"{BASE}/{{}}/mark",)
 """What it subscribes to."""
-ROS_BODIES = ("humans/bodies", "tf", "tf_static")
-"""What it also subscribes to where the bodies that ROS 2 nodes track become skeletons; it publishes there, too."""
+ROS_BODIES = (
+    *("humans/bodies/tracked", "humans/bodies/*/joint_states", "humans/bodies/*/skeleton2d"),
+    *("tf", "tf_static"),
+)
+"""What it also subscribes to where the bodies that ROS 2 nodes track become skeletons; it publishes there, too.
+
+Pictures of bodies, which detectors publish as well, are not among them: images stay on their host.
+"""
 GATEWAY = Role(
     "gateway",
     "a sensor's gateway, or the simulated scene",
@@ -117,12 +126,14 @@ PAGE = Role(
     inspects=True,
     commands=True,
 )
+WITHOUT_CAMERA = (keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT)
+"""What the bridge reads unless it says where bodies are in the image."""
 BRIDGE = Role(
     "ros2",
     "the bridge to ROS 2, which publishes marks for ROS 2 nodes",
     services=("ros2_bridge",),
     puts=(keys.SEGMENT,),
-    reads=(keys.SKELETON, keys.OBJECTS, keys.EVENT, keys.INTENT, keys.COLOR),
+    reads=(*WITHOUT_CAMERA, keys.COLOR),
     ros_puts=ROS_TOPICS,
     ros_reads=ROS_MARKS,
 )
@@ -131,8 +142,8 @@ BODIES_BRIDGE = Role(
     "the bridge to ROS 2 that also publishes as skeletons the bodies that ROS 2 nodes track",
     services=BRIDGE.services,
     puts=(*BRIDGE.puts, keys.SKELETON),
-    reads=BRIDGE.reads,
-    ros_puts=BRIDGE.ros_puts,
+    reads=WITHOUT_CAMERA,
+    ros_puts=ROS_WITHOUT_PEOPLE,
     ros_reads=(*BRIDGE.ros_reads, *ROS_BODIES),
 )
 ROBOT = Role(

@@ -5,7 +5,7 @@ from enum import Enum
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 
 RESTART_AFTER = 3
-"""A stream counts as restarted after this many rising stamps that are older than `RESTART_BEHIND_NS`."""
+"""A stream counts as restarted after this many rising stamps that lie behind the newest by more than is allowed."""
 
 RESTART_BEHIND_NS = MAX_SEGMENT_NS + MAX_SKEW_NS
 """How far such stamps lie behind the newest one (ns): further than any open segment reaches back."""
@@ -20,9 +20,14 @@ class Order(Enum):
 
 
 class StampGuard:
-    """Classifies each stamp of one stream: the next one, a stale one (older or repeated), or the first of a restart."""
+    """Classifies each stamp of one stream: the next one, a stale one (older or repeated), or the first of a restart.
 
-    def __init__(self) -> None:
+    Args:
+        restart_behind_ns: how far stamps lie behind the newest (ns) that count as a restart.
+    """
+
+    def __init__(self, restart_behind_ns: int = RESTART_BEHIND_NS) -> None:
+        self._restart_behind_ns = restart_behind_ns
         self.newest_ns: int | None = None
         self._session: str | None = None
         self._far_behind_ns: list[int] = []
@@ -40,7 +45,7 @@ class StampGuard:
 
     def _has_restarted(self, stamp_ns: int) -> bool:
         assert self.newest_ns is not None
-        if stamp_ns > self.newest_ns - RESTART_BEHIND_NS:
+        if stamp_ns > self.newest_ns - self._restart_behind_ns:
             self._far_behind_ns = []
             return False
         rising = not self._far_behind_ns or stamp_ns > self._far_behind_ns[-1]

@@ -98,6 +98,9 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
         (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords exclude each other"),
         (("init", *HOSTS, "--ros-bodies", "camera"), "--ros-bodies needs --ros2 and a single camera host"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "camera", "--simulate"), "excludes --simulate"),
+        (("init", *HOSTS, "--ros2", "0", "--ros-bodies", ""), "'' is not the name of a frame"),
+        (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "a\nExecStart=b"), "is not the name of a frame"),
+        (("init", *HOSTS, "--ros2", "0", "--ros-bodies", 'the "camera"'), "is not the name of a frame"),
         (("rotate",), "contains no deployment.json"),
     ],
 )

@@ -84,7 +84,7 @@ def test_only_gateways_put_what_is_seen_and_images_go_to_whom_they_concern() -> 
     assert {role.name for role in ROLES if keys.SKELETON in role.puts} == {"gateway", "ros2_bodies"}
     assert {role.name for role in ROLES if {*IMAGES} & {*role.reads}} == {
         *("tracker", "page", "recorder"),
-        *("ros2", "ros2_bodies"),  # take the camera from them, to say where people are in the image
+        "ros2",  # takes the camera from them, to say where people are in the image
     }
 
 
@@ -215,6 +215,26 @@ def test_bodies_are_put_by_detectors_and_read_by_the_bridge_that_makes_skeletons
         if topic.name != "mark":
             for role, flow in ((BRIDGE, "egress"), (ROBOT, "ingress")):
                 assert not any(zenoh.KeyExpr(each).intersects(key) for each in allowed(role, flow, "put", 7)), topic.key
+
+
+def test_a_bridge_that_reads_bodies_puts_none_and_reads_what_its_step_takes() -> None:
+    pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
+    from ros2_bridge.bridge import Ros2Bridge
+    from ros2_bridge.settings import Settings
+
+    for role, settings in (
+        (BRIDGE, Settings()),
+        (BODIES_BRIDGE, Settings(ros_bodies=True, ros_frame_id="camera_optical_frame")),
+    ):
+        assert {*role.reads} == {*Ros2Bridge(settings).inputs}
+    forged = zenoh.KeyExpr("7/humans/bodies/tracked/type/hash")
+    assert not any(zenoh.KeyExpr(each).intersects(forged) for each in allowed(BODIES_BRIDGE, "ingress", "put", 7))
+
+
+def test_detectors_put_no_pictures_of_people_which_would_cross_between_hosts() -> None:
+    picture = zenoh.KeyExpr("7/humans/bodies/ab/cropped/type/hash")
+    assert not any(zenoh.KeyExpr(each).intersects(picture) for each in allowed(DETECTOR, "ingress", "put", 7))
+    assert not any(zenoh.KeyExpr(each).intersects(picture) for each in allowed(BODIES_BRIDGE, "egress", "put", 7))
 
 
 @pytest.mark.parametrize("role", [ROBOT, DETECTOR], ids=lambda role: role.name)

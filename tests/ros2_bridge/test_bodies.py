@@ -1,7 +1,9 @@
 """Bodies of ROS4HRI become skeletons: who, where, when, in which frame, and what is refused."""
 
+import gc
 import math
-from collections.abc import Iterable
+import tracemalloc
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -34,8 +36,9 @@ from ros2_bodies import (
 )
 from ros2_bridge import topics
 from ros2_bridge.bridge import Ros2Bridge
+from ros2_bridge.hri_in.body_reader import LONGEST_NAME
 from ros2_bridge.hri_in.human_model import FOREARM_M, LINKS, TORSO_M, UPPER_ARM_M
-from ros2_bridge.hri_in.transform_tree import MOST_FRAMES
+from ros2_bridge.hri_in.transform_tree import HISTORY, MOST_FRAMES
 from ros2_bridge.settings import Settings
 
 FIRST_NS = 1_700_000_000 * SECOND_NS
@@ -156,6 +159,12 @@ def test_up_is_the_z_axis_of_the_root_of_the_robots_tree() -> None:
     assert stream(made, {"ab": STANDING})[-1].up_in_camera == pytest.approx([0, 1, 0], abs=1e-9)
 
 
+def test_the_cameras_frame_is_the_same_with_a_slash_before_it() -> None:
+    made = Ros2Bridge(Settings(sensor="head", ros_bodies=True, ros_frame_id=f"/{OPTICAL}"))
+    made.foreign_node("5e55")
+    assert len(stream(made, {"ab": STANDING})) == 6
+
+
 def test_a_camera_without_a_robot_is_taken_for_level() -> None:
     assert stream(bridge(), {"ab": STANDING})[-1].up_in_camera is None
 
@@ -198,6 +207,18 @@ def test_everybody_who_is_tracked_stands_in_one_skeleton_though_they_come_apart(
     made = bridge()
     there = {"ab": STANDING, "cd": BESIDE}
     found = given_to(made, (
+        each for stamp_ns in stamps(8)
+        for each in (
+            tracked(stamp_ns, *there),
+            *(tf(*frames(stamp_ns, body, body_id)) for body_id, body in there.items()),
+        )
+    ))  # fmt: skip
+    assert [[agent.agent for agent in skeleton.agents] for skeleton in found] == [[1, 2]] * 8
+
+
+def test_ids_of_which_one_ends_in_the_other_are_told_apart() -> None:
+    there = {"1": STANDING, "left_1": BESIDE}
+    found = given_to(bridge(), (
         each for stamp_ns in stamps(8)
         for each in (
             tracked(stamp_ns, *there),
@@ -250,6 +271,36 @@ def test_whoever_is_a_little_late_is_waited_for() -> None:
             found += given_to(made, [tf(*frames(before_ns, there["slow"], "slow"))])
     assert {len(skeleton.agents) for skeleton in found[:10]} == {1}
     assert {len(skeleton.agents) for skeleton in found[-10:]} == {2}
+
+
+@pytest.mark.parametrize(
+    "newer",
+    [
+        lambda stamp_ns: tracked(stamp_ns, "1"),
+        lambda stamp_ns: tf(transform(stamp_ns, "wheel_1", (0, 0, 0), parent="base_link")),
+    ],
+    ids=["list", "frame of the robot"],
+)
+def test_joints_are_used_though_lists_and_frames_of_the_robot_are_far_newer(newer: Callable[[int], Foreign]) -> None:
+    """A slow detector, such as hri_fullbody, may depend on the list of a fast one."""
+    made = bridge()
+    found = given_to(made, (
+        each for stamp_ns in stamps(30)
+        for each in (
+            tracked(stamp_ns, "1"), newer(stamp_ns + 200_000_000), newer(stamp_ns + 210_000_000),
+            tf(*frames(stamp_ns, STANDING, "1")),
+        )
+    ))  # fmt: skip
+    assert [it.stamp_ns for it in found] == stamps(30)
+
+
+def test_bodies_are_known_also_by_lists_without_a_stamp_which_libhri_does_not_read() -> None:
+    made = bridge()
+    found = given_to(made, (
+        each for stamp_ns in stamps(10) for each in (tracked(0, "ab"), tf(*frames(stamp_ns, STANDING, "ab")))
+    ))  # fmt: skip
+    assert [it.stamp_ns for it in found] == stamps(10)
+    assert given_to(made, [tracked(0), tf(*frames(stamps(11)[-1], STANDING, "ab"))]) == []
 
 
 def test_a_body_that_has_points_in_the_image_alone_gives_no_skeleton_and_the_state_says_what_to_do() -> None:
@@ -306,6 +357,13 @@ def test_a_recording_that_is_played_again_is_a_new_run_in_which_numbers_go_on() 
     assert {agent.agent for it in again for agent in it.agents} == {2}
 
 
+def test_a_short_recording_that_is_played_in_a_loop_gives_skeletons_each_time() -> None:
+    made = bridge()
+    runs = [stream(made, {"ab": STANDING}, count=90) for _ in range(3)]
+    assert [len(run) >= 85 for run in runs] == [True] * 3
+    assert [run[-1].session_id for run in runs] == ["ros2-5e55.0", "ros2-5e55.1", "ros2-5e55.2"]
+
+
 def test_one_stamp_of_the_future_does_not_end_the_stream() -> None:
     made = bridge()
     stream(made, {"ab": STANDING})
@@ -321,6 +379,8 @@ def test_one_stamp_of_the_future_does_not_end_the_stream() -> None:
         (Foreign(topics.OTHERS_TF.name, b"\x00\x01\x00\x00" + bytes(300_000), ""), "bad_body_message"),
         (tf(transform(FIRST_NS, "head_ab", (math.nan, 0, 0))), "bad_transform"),
         (tf(transform(FIRST_NS, "head_ab", (0, 0, 0), (0, 0, 0, 0))), "bad_transform"),
+        (tf(transform(FIRST_NS, "f" * (LONGEST_NAME + 1), (0, 0, 0))), "bad_transform"),
+        (tf_static(transform(0, "f", (0, 0, 0), parent="p" * (LONGEST_NAME + 1))), "bad_transform"),
         (tf(transform(0, "head_ab", (0, 0, 0))), "bad_body_stamp"),
         (tracked(0, "ab"), "bad_body_stamp"),
         (tracked(FIRST_NS, "a/b"), "bad_body_id"),
@@ -346,6 +406,20 @@ def test_transforms_in_a_circle_lead_nowhere() -> None:
         ))
     ))  # fmt: skip
     assert found == []
+
+
+def test_names_that_are_no_joints_of_the_model_are_not_kept() -> None:
+    made = bridge()
+    given_to(made, [tracked(FIRST_NS, *(f"b{i}" for i in range(MOST_AGENTS)))])
+    names = {f"j{i}": 0.0 for i in range(4000)}
+    payloads = [joint_states(stamp_ns, "b0", names) for stamp_ns in stamps(HISTORY)]
+    gc.collect()
+    tracemalloc.start()
+    given_to(made, payloads)
+    gc.collect()
+    kept_bytes, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert kept_bytes < 100_000
 
 
 def test_frames_without_end_are_forgotten_and_the_way_to_the_camera_is_not() -> None:

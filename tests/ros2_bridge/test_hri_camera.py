@@ -32,6 +32,20 @@ def test_joints_are_where_opencv_projects_them(count) -> None:
     assert camera.seen(STANDING, SURE).places * [640, 480] == pytest.approx(expected[:, 0], abs=1e-6)
 
 
+def test_a_foot_far_below_the_image_is_not_shown_where_the_lens_model_turns_back() -> None:
+    """At 55 degrees, the polynomial of a usual webcam points into the image again, as OpenCV's projection does."""
+    joints, foot = STANDING.copy(), INDEX["left_foot"]
+    joints[foot] = [0.0, 1.0, 0.7]
+    camera = Camera.of(image(distortion=[-0.4, 0.0, 0.0, 0.0]))
+    projected, _ = cv2.projectPoints(
+        joints[foot], np.zeros(3), np.zeros(3), np.array(NEAR).reshape(3, 3), np.array([-0.4, 0.0, 0.0, 0.0])
+    )
+    assert 0 < projected[0, 0, 1] < 480
+    places = camera.seen(joints, SURE).places
+    assert np.isnan(places[foot]).all()
+    assert not np.isnan(places[INDEX["head"]]).any()
+
+
 def test_a_camera_beside_that_of_the_skeletons_sees_people_from_its_own_place() -> None:
     half_a_metre_right = np.eye(4)
     half_a_metre_right[0, 3] = 0.5

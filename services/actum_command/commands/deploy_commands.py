@@ -11,7 +11,7 @@ from actum.runtime import needs_extra
 from actum.settings import SettingsError
 from actum_command.commands.plain_help import PlainTyper
 from actum_command.commands.terminal import fail, failing_on, say
-from actum_deployer.deployment import Deployment
+from actum_deployer.deployment import FRAME, Deployment
 from actum_deployer.hosts import hosts_of
 
 app = PlainTyper(
@@ -128,6 +128,11 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
     cameras = [host for host in placed if host.kind == "camera"]
     if ros_bodies is not None and (ros2 is None or simulate or len(cameras) > 1):
         fail("--ros-bodies needs --ros2 and a single camera host, and excludes --simulate")
+    if ros_bodies is not None and not FRAME.fullmatch(ros_bodies):
+        fail(
+            f"--ros-bodies {ros_bodies!r} is not the name of a frame: use letters, digits, '_', '.', '/' and '-', at "
+            "most 200, such as camera_color_optical_frame"
+        )
     with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, revoked_before, write_deployment
 

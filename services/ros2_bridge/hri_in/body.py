@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from ros2_bridge.hri_in.body_joints import BODY, joints_of
-from ros2_bridge.hri_in.human_model import link_places
+from ros2_bridge.hri_in.human_model import JOINTS, link_places
 from ros2_bridge.hri_in.transform_tree import HISTORY, TransformTree
 from ros2_bridge.rotations import Point
 
@@ -46,9 +46,9 @@ class Body:
         self._last: Found | None = None
 
     def take_angles(self, stamp_ns: int, names: list[str], angles_rad: list[float]) -> None:
-        """Note the angles (rad) of joints at an instant, by names that end in the body's id."""
-        pairs = zip(names, angles_rad, strict=False)
-        self._angles_rad[stamp_ns] = {name.removesuffix(self._suffix): angle for name, angle in pairs}
+        """Note the angles (rad) of the model's joints at an instant, by names that end in the body's id."""
+        pairs = zip((name.removesuffix(self._suffix) for name in names), angles_rad, strict=False)
+        self._angles_rad[stamp_ns] = {name: angle for name, angle in pairs if name in JOINTS}
         if len(self._angles_rad) > HISTORY:
             self._angles_rad.popitem(last=False)
 

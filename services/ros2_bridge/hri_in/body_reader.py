@@ -19,6 +19,8 @@ MOST_BYTES = 250_000
 """A longer payload is not read (bytes): two thousand transforms."""
 FURTHEST_M = 1e6
 """Largest coordinate of a frame in its parent (m): maps of cities are larger than rooms, and nothing is further."""
+LONGEST_NAME = 256
+"""Most characters of a frame's name: thousands of names are kept."""
 BODY_ID = re.compile(r"[A-Za-z0-9_]{1,64}")
 """The id of a body: it is part of the names of topics."""
 REVIEW_NS = 2 * SECOND_NS
@@ -41,8 +43,8 @@ class BodyReader:
     """
 
     def __init__(self, sensor: str, optical_frame: str, counters: Counters) -> None:
-        self._counters, self._optical_frame = counters, optical_frame
-        self._assembler = SkeletonAssembler(sensor, optical_frame, counters)
+        self._counters, self._optical_frame = counters, _frame(optical_frame)
+        self._assembler = SkeletonAssembler(sensor, self._optical_frame, counters)
         self._tree = self._assembler.tree
         self._was_told_ids = self._heard = False
         self._reviewed_ns: int | None = None
@@ -112,9 +114,7 @@ class BodyReader:
         for bad in (each for each in message.ids if not BODY_ID.fullmatch(each)):
             self._counters.reject("bad_body_id", f"{bad!r}: letters, digits and '_' are allowed, 64 at most")
         ids = list(dict.fromkeys(each for each in message.ids if BODY_ID.fullmatch(each)))
-        stamp_ns = self._stamp_ns(message.header)
-        if stamp_ns is not None:
-            yield from self._assembler.track(stamp_ns, ids)
+        yield from self._assembler.track(self._stamp_ns(message.header), ids)
 
     def _transforms(self, message: Any, _foreign: Foreign) -> Iterator[Skeleton]:
         touched: dict[int, dict[str, None]] = {}
@@ -160,7 +160,12 @@ class BodyReader:
         return None
 
     def _edge(self, transform: Any) -> Edge | None:
-        """Return a transform; None, and count it, where it is no rigid one."""
+        """Return a transform; None, and count it, where it is no rigid one or the frames' names are too long."""
+        lengths = len(transform.child_frame_id), len(transform.header.frame_id)
+        if max(lengths) > LONGEST_NAME:
+            detail = f"the names of the frame and its parent have {lengths[0]} and {lengths[1]} characters"
+            self._counters.reject("bad_transform", f"{detail}; at most {LONGEST_NAME} are allowed")
+            return None
         at, turn = transform.transform.translation, transform.transform.rotation
         placed = placement((at.x, at.y, at.z), (turn.x, turn.y, turn.z, turn.w), FURTHEST_M)
         if placed is None:

@@ -85,6 +85,8 @@ LINKS: tuple[Link, ...] = (
     *_leg("r", -1),
 )
 """The links in an order in which parents come first; the body is their root."""
+JOINTS = frozenset(link.joint for link in LINKS if link.joint is not None)
+"""The names of the model's joints."""
 
 
 def link_places(angles_rad: Mapping[str, float]) -> dict[str, Point]:

@@ -1,10 +1,10 @@
 """Puts together, from what comes about each body and in any order, one skeleton message for each captured image."""
 
 from collections import OrderedDict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from actum.messages import MOST_AGENTS, Agent, Joint, Skeleton
-from actum.node import Counters
+from actum.node import SECOND_NS, Counters
 from actum.stamps import Order, StampGuard
 from ros2_bridge.hri_in.body import Body, Found
 from ros2_bridge.hri_in.transform_tree import TransformTree
@@ -12,6 +12,9 @@ from ros2_bridge.rotations import rotated
 
 PATIENCE_NS = 100_000_000
 """How much newer (ns) the newest stamp may be before an image's skeleton is put although something of it is missing."""
+RESTARTED_NS = 2 * SECOND_NS
+"""How far (ns) the stamps of bodies step back where time begins anew. Recordings of some seconds that are played in a
+loop, simulations that are reset, and clocks that are set give nothing that names the new run."""
 MOST_OPEN = 32
 """Most images whose skeletons wait for more: a third of a second at 100 Hz."""
 MOST_NUMBERED = 4096
@@ -33,39 +36,53 @@ class SkeletonAssembler:
         self._sensor, self._optical_frame, self._counters = sensor, optical_frame, counters
         self._numbers: OrderedDict[str, int] = OrderedDict()
         self._highest_number = self._runs = 0
-        self._order = StampGuard()
+        self._order = StampGuard(RESTARTED_NS)
         self._open: dict[int, dict[str, Found]] = {}
         self._newest_put_ns = self._judged_ns = -1
 
-    def track(self, stamp_ns: int, ids: Sequence[str]) -> Iterator[Skeleton]:
-        """Note who is there from now on, and yield the skeletons that are due."""
+    def track(self, stamp_ns: int | None, ids: Sequence[str]) -> Iterator[Skeleton]:
+        """Note who is there from now on, and yield the skeletons that are due.
+
+        Without a stamp, a list of nobody gives no skeleton.
+        """
         if len(ids) > MOST_AGENTS:
             self._counters.reject("too_many_bodies", f"{len(ids)} bodies; the first {MOST_AGENTS} are used")
         self.bodies = {each: self.bodies.get(each) or self._body(each) for each in ids[:MOST_AGENTS]}
-        yield from self.advance(stamp_ns, ids)
+        if stamp_ns is not None:
+            yield from self.advance(stamp_ns, ids)
 
     def owner(self, frame: str) -> str | None:
-        """Return the id of the tracked body to which a frame belongs by its name; None where it is no body's."""
-        return next((body_id for body_id in self.bodies if frame.endswith(f"_{body_id}")), None)
+        """Return the id of the tracked body to which a frame belongs by its name; None where it is no body's.
+
+        Of ids of which one ends in the other, such as `left_1` and `1`, it is the longer.
+        """
+        return max((body_id for body_id in self.bodies if frame.endswith(f"_{body_id}")), key=len, default=None)
 
     def advance(self, stamp_ns: int, ids: Sequence[str]) -> Iterator[Skeleton]:
-        """Look again at bodies of which something new is known at a stamp, and yield the skeletons that are due."""
+        """Look again at bodies of which something new is known at a stamp, and yield the skeletons that are due.
+
+        A stamp at which no joints of bodies are known begins no image: a list of bodies, or a frame whose name only
+        looks like a body's, may be newer than the joints that come next.
+        """
+        bodies = {body_id: self.bodies[body_id] for body_id in ids if body_id in self.bodies}
+        found = {body_id: body.find(self.tree, stamp_ns) for body_id, body in bodies.items()}
+        known = {body_id: joints for body_id, joints in found.items() if joints is not None}
+        if known or not self.bodies:
+            yield from self._take(stamp_ns, known)
+
+    def _take(self, stamp_ns: int, found: dict[str, Found]) -> Iterator[Skeleton]:
+        """Add joints of bodies to the skeleton of a stamp, and yield the skeletons that are due."""
         if self._has_restarted(stamp_ns):
             self._begin_anew()
-        bodies = [(body_id, self.bodies[body_id]) for body_id in ids if body_id in self.bodies]
         if stamp_ns <= self._newest_put_ns:
-            self._note_late([body for _, body in bodies], stamp_ns)
+            self._note_late(found, stamp_ns)
             return
-        found = self._open.setdefault(stamp_ns, {})
-        for body_id, body in bodies:
-            joints = body.find(self.tree, stamp_ns)
-            if joints is not None:
-                found[body_id] = joints
+        self._open.setdefault(stamp_ns, {}).update(found)
         yield from self._due()
 
-    def _note_late(self, bodies: Sequence[Body], stamp_ns: int) -> None:
+    def _note_late(self, ids: Iterable[str], stamp_ns: int) -> None:
         """Count bodies that a skeleton did without; one that is late by little is waited for from now on."""
-        for body in bodies:
+        for body in (self.bodies[body_id] for body_id in ids):
             if not body.is_awaited:
                 self._counters.counts[LATE] += 1
                 body.is_awaited = stamp_ns > self._newest_put_ns - PATIENCE_NS
@@ -78,14 +95,18 @@ class SkeletonAssembler:
         return self._order.judge(stamp_ns) is Order.RESTART
 
     def _due(self) -> Iterator[Skeleton]:
-        """Yield the skeletons up to the newest whole one, and those that are overdue, in the order of their stamps."""
-        newest_ns = max(self._open)
-        overdue_ns = newest_ns - PATIENCE_NS
+        """Yield the skeletons that are due, after which others may be whole, in the order of their stamps."""
+        while due := self._due_stamps():
+            for stamp_ns in due:
+                yield from self._skeleton(stamp_ns, self._open.pop(stamp_ns))
+
+    def _due_stamps(self) -> list[int]:
+        """Return the stamps up to the newest of a whole skeleton, and those that are overdue or too many."""
+        overdue_ns = max(self._open, default=0) - PATIENCE_NS
         whole_ns = max((stamp_ns for stamp_ns in self._open if self._is_whole(stamp_ns)), default=-1)
         spare = len(self._open) - MOST_OPEN
-        for i, stamp_ns in enumerate(sorted(self._open)):
-            if stamp_ns <= max(overdue_ns, whole_ns) or i < spare:
-                yield from self._skeleton(stamp_ns, self._open.pop(stamp_ns))
+        waiting = enumerate(sorted(self._open))
+        return [stamp_ns for i, stamp_ns in waiting if stamp_ns <= max(overdue_ns, whole_ns) or i < spare]
 
     def _is_whole(self, stamp_ns: int) -> bool:
         found = self._open[stamp_ns]

@@ -31,10 +31,10 @@ NEAREST_M = 0.1
 """Joints nearer to the camera's plane than this (m) have no place in the image."""
 MOST_COEFFICIENTS = 12
 """Of the lens's distortion those without a tilted sensor: radial (6), tangential (2), thin prism (4)."""
-
-
 MOST_PX = 1e6
 """Largest focal length (px)."""
+RADII = np.linspace(0.0, 5.0, 501)
+"""Distances from the line of sight, on the plane at distance 1, at which a lens is looked at: up to 79 degrees."""
 FURTHEST_M = 100.0
 """Most distance (m) of the camera from that of the skeletons, beyond which the transform between them is an error."""
 
@@ -90,16 +90,28 @@ class Camera:
         return InImage(np.where(inside, places, np.nan), distance, confidence, self)
 
     def _distorted(self, plane: Array) -> Array:
-        """Return points of the plane at distance 1 (n, 2) as the lens shows them, by OpenCV's model."""
+        """Return points of the plane at distance 1 (n, 2) as the lens shows them, by OpenCV's model.
+
+        NaN for points further out than the model holds: its polynomials turn back, and would show them in the image.
+        """
         if not self.distortion.any():
             return plane
-        k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4 = self.distortion
+        _, _, p1, p2, *_, s1, s2, s3, s4 = self.distortion
+        turns = np.flatnonzero(~(np.diff(RADII * self._radial(RADII**2)) > 0))
         x, y = plane.T
         r2 = x * x + y * y
-        radial = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+        if len(turns):
+            r2 = np.where(r2 <= RADII[turns[0]] ** 2, r2, np.nan)
+        radial = self._radial(r2)
         across = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x) + r2 * (s1 + r2 * s2)
         down = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y + r2 * (s3 + r2 * s4)
         return np.stack([across, down], axis=1)
+
+    def _radial(self, r2: Array) -> Array:
+        """Return by how much the lens moves points outwards whose squared distances from the axis are these."""
+        k1, k2, _, _, k3, k4, k5, k6, *_ = self.distortion
+        moved: Array = (1 + r2 * (k1 + r2 * (k2 + r2 * k3))) / (1 + r2 * (k4 + r2 * (k5 + r2 * k6)))
+        return moved
 
 
 @dataclass(frozen=True)
