@@ -4,6 +4,7 @@ import time
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 
@@ -20,7 +21,7 @@ from actum.node import Numbering
 from actum.runtime import Client, Received
 from actum.settings import NodeSettings
 from actum_command import processes
-from actum_command.supervising import Supervisor
+from actum_command.supervising import Program, Supervisor
 from som_classifier.model_loading import load_model
 
 from .scenes import Answer, answers, crowd
@@ -31,15 +32,16 @@ SECONDS = 30.0
 """Length of a run (s): several actions of everybody."""
 SETTLING_S = 5.0
 """How long answers may take after the last frame (s)."""
-PEOPLE = (1, 5, 10)
-"""People before each sensor."""
+CROWDS = ((1, 1), (5, 1), (10, 1), (10, 2))
+"""People before each sensor, and classifiers."""
 HEAD = (
-    "| people | p50 (ms) | p99 (ms) | dropped or rejected | answers as offline | answered twice | processors used |\n"
-    "|---:|---:|---:|---:|---:|---:|---|"
+    "| people | classifiers | p50 (ms) | p99 (ms) | dropped or rejected | answers as offline | answered twice "
+    "| processors used |\n"
+    "|---:|---:|---:|---:|---:|---:|---:|---|"
 )
 Answers = dict[str, dict[str, Answer]]
 """What is answered, by sensor and segment."""
-SERVICES = ("pose_preprocessor", "som_classifier")
+PREPROCESSOR, CLASSIFIER = "pose_preprocessor", "som_classifier"
 
 
 class Watch:
@@ -75,25 +77,25 @@ class Watch:
 def crowds(model: Path) -> Iterator[str]:
     """Yield a table of crowds of several sizes."""
     yield (
-        f"{len(SENSORS)} sensors at 30 frames/s for {SECONDS:.0f} s, one preprocessor and one classifier for all; each "
-        "action of everybody is marked, and the search for unmarked actions is on. Latencies are those from the put of "
-        "a skeleton to the partial action that follows from it. An answer is as offline if its action and its "
-        "confidence are those that the same steps give without any transport."
+        f"{len(SENSORS)} sensors at 30 frames/s for {SECONDS:.0f} s, and one preprocessor for all. One classifier "
+        "serves all sensors, or two share them (`--share`). Each action of everybody is marked, and the search for "
+        "unmarked actions is on. Latencies are those from the put of a skeleton to the partial action that follows "
+        "from it. An answer is as offline if its action and its confidence are those that the same steps give without "
+        "any transport."
     )
-    rows = [_row(people * len(SENSORS), *_live(people, model)) for people in PEOPLE]
+    rows = [_row(people * len(SENSORS), count, *_live(people, count, model)) for people, count in CROWDS]
     yield "\n".join((HEAD, *rows))
 
 
-def _live(people: int, model: Path) -> tuple["Watch", Answers, dict[str, float]]:
+def _live(people: int, classifiers: int, model: Path) -> tuple["Watch", Answers, dict[str, float]]:
     """Show so many people before each sensor; return what was heard, the answers offline, and each program's cores."""
     scenes = {sensor: crowd(sensor, people, 20 * n, SECONDS) for n, sensor in enumerate(SENSORS)}
     expected = {sensor: answers(scene, load_model(model)) for sensor, scene in scenes.items()}
     encoded = {sensor: _encoded(scene) for sensor, scene in scenes.items()}
     watch, first = Watch(), SETTINGS.of_each_sensor[0]
     with ExitStack() as stack:
-        programs = [each for each in processes.services(SETTINGS, model, {}) if each.name in SERVICES]
         supervisor = stack.enter_context(Supervisor(model.with_name("crowds.log")))
-        for program in (processes.router(first), *programs):
+        for program in (processes.router(first), *_programs(classifiers, model)):
             supervisor.start(program)
         client = stack.enter_context(Client(first, wait_s=STARTING_S))
         client.tap(keys.pattern(keys.ACTION), watch.hear_action)
@@ -106,13 +108,24 @@ def _live(people: int, model: Path) -> tuple["Watch", Answers, dict[str, float]]
     return watch, expected, cores
 
 
-def _row(people: int, watch: Watch, expected: Answers, cores: dict[str, float]) -> str:
+def _programs(classifiers: int, model: Path) -> list[Program]:
+    """Return a preprocessor for all sensors, and one classifier for all or several that share them."""
+    by_name = {each.name: each for each in processes.services(SETTINGS, model, {})}
+    alone = by_name[CLASSIFIER]
+    if classifiers == 1:
+        return [by_name[PREPROCESSOR], alone]
+    names = [f"{CLASSIFIER}-{number}" for number in range(1, classifiers + 1)]
+    shared = [replace(alone, name=name, arguments=[*alone.arguments, "--share", "--instance", name]) for name in names]
+    return [by_name[PREPROCESSOR], *shared]
+
+
+def _row(people: int, classifiers: int, watch: Watch, expected: Answers, cores: dict[str, float]) -> str:
     p50, p99 = np.percentile(watch.latencies_ms, [50, 99])
     asked = [(sensor, name) for sensor, each in expected.items() for name in each]
     alike = sum(watch.answers[sensor].get(name) == expected[sensor][name] for sensor, name in asked)
     lost = sum(sum(counts.values()) for counts in (*watch.drops.values(), *watch.rejects.values()))
     used = ", ".join(f"{name} {share:.2f}" for name, share in cores.items())
-    cells = (people, f"{p50:.1f}", f"{p99:.1f}", lost, f"{alike} of {len(asked)}", watch.twice, used)
+    cells = (people, classifiers, f"{p50:.1f}", f"{p99:.1f}", lost, f"{alike} of {len(asked)}", watch.twice, used)
     return f"| {' | '.join(map(str, cells))} |"
 
 
