@@ -10,9 +10,9 @@ from actum import keys
 from actum.messages import Action, Continuation, Posture
 from actum.node import replay
 from actum.runtime import Client, Listening
-from actum_deployer.roles import identity
+from actum_deployer.roles import PREPROCESSOR, identity
 from continued import at_this_speed
-from deployments import BARE_ROUTER, BY_SERVICE, deployed
+from deployments import BARE_ROUTER, deployed
 from live import PATIENCE_S, System, collect, wait_until
 from people import FRAME_NS, reaches
 from performers import mark
@@ -101,7 +101,7 @@ def test_none_is_put_before_somebody_listens(client: Client) -> None:
 def test_where_routers_ask_who_may_what_a_viewer_on_another_host_gets_them(tmp_path: Path) -> None:
     """A classifier learns by the rules of access control, too, that somebody listens."""
     at_this_speed().save(tmp_path / "model.npz")
-    preprocessor = identity(BY_SERVICE["pose_preprocessor"], "kinect0")
+    preprocessor = identity(PREPROCESSOR, "kinect0")
     with deployed(tmp_path / "deployed", BARE_ROUTER, passwords=True) as running:
         running.start("som_classifier", "compute", "--model", str(tmp_path / "model.npz"))
         with running.client("viewer", "camera") as viewer, running.client(preprocessor, "compute") as client:
