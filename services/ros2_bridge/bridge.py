@@ -24,7 +24,7 @@ from ros2_bridge.topics import RosTopic
 class Ros2Bridge:
     """Republishes skeletons, objects, events and intents on ROS 2 topics, and takes marks and bodies from others.
 
-    Of images only the camera is used, to say where bodies are in them.
+    Of images the camera is used, to say where bodies are in them. Their pixels are used only for the topic `cropped`.
 
     Raises:
         MappingError: the mapping file cannot be used.

@@ -37,7 +37,10 @@ class Settings(ServiceSettings):
     ros_domain_id: int = Field(0, ge=0, le=HIGHEST_DOMAIN, description="the ROS_DOMAIN_ID of your ROS 2 nodes")
     ros_namespace: str | None = Field(
         None,
-        description="ROS namespace of all topics except /tf and /tf_static; default: actum/ and the sensor's name",
+        description=(
+            "ROS namespace of all topics except /tf, /tf_static and those of ROS4HRI; default: actum/ and the sensor's "
+            "name"
+        ),
     )
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
         "jazzy",

@@ -203,21 +203,9 @@ def test_frames_count_more_than_joint_states() -> None:
         np.testing.assert_allclose(joints(skeleton)[INDEX["neck"]], STANDING[INDEX["neck"]], atol=1e-9)
 
 
-def test_everybody_who_is_tracked_stands_in_one_skeleton_though_they_come_apart() -> None:
-    made = bridge()
-    there = {"ab": STANDING, "cd": BESIDE}
-    found = given_to(made, (
-        each for stamp_ns in stamps(8)
-        for each in (
-            tracked(stamp_ns, *there),
-            *(tf(*frames(stamp_ns, body, body_id)) for body_id, body in there.items()),
-        )
-    ))  # fmt: skip
-    assert [[agent.agent for agent in skeleton.agents] for skeleton in found] == [[1, 2]] * 8
-
-
-def test_ids_of_which_one_ends_in_the_other_are_told_apart() -> None:
-    there = {"1": STANDING, "left_1": BESIDE}
+@pytest.mark.parametrize("ids", [("ab", "cd"), ("1", "0_1")], ids=["different", "one ends in the other"])
+def test_everybody_who_is_tracked_stands_in_one_skeleton_though_they_come_apart(ids: tuple[str, str]) -> None:
+    there = dict(zip(ids, (STANDING, BESIDE), strict=True))
     found = given_to(bridge(), (
         each for stamp_ns in stamps(8)
         for each in (

@@ -105,8 +105,7 @@ class SharedPlace(Place):
             self._unanswered_since_s = math.inf
             log.warning(
                 "sensor %s cannot be shared, because the router does not report which other processes share this "
-                "sensor: allow "
-                "liveliness_query in the router's access control",
+                "sensor: allow liveliness_query in the router's access control",
                 self._settings.sensor,
             )
 
