@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, FiniteFloat
 
 from actum.messages.base import FinitePoint, Hand, Message, Model, Name, SegmentId
 
@@ -16,9 +16,9 @@ class HopTime(Model):
     """The later message, such as `posture` or `event`."""
     count: int
     """Pairs in the last minute."""
-    p50_ms: float
+    p50_ms: FiniteFloat
     """Median time (ms), right to 2.5 %."""
-    p99_ms: float
+    p99_ms: FiniteFloat
     """Time (ms) that 99 of 100 pairs do not exceed, right to 2.5 %; with fewer than a hundred pairs the longest."""
 
 
