@@ -61,6 +61,9 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     named: dict[str, Path] = {}
     for file in files:
         if name_of(file) in named:
-            raise PairingError(f"two pictures of the same camera are named {name_of(file)}: keep only one of the two")
+            raise PairingError(
+                f"{named[name_of(file)]} and {file} are pictures of the same camera with the same name: delete or rename "
+                "one of the two"
+            )
         named[name_of(file)] = file
     return named

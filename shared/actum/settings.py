@@ -155,9 +155,8 @@ class ServiceSettings(BaseSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which som_classifier and action_fusion store the last actions and events that they published, "
-            "to publish them again after a restart; all other services ignore it. Default: no folder, so nothing is "
-            "stored"
+            "used only by som_classifier and action_fusion: a folder in which they store the last actions and events "
+            "that they published, to publish them again after a restart; default: no folder, so nothing is stored"
         ),
     )
     health_file: Path | None = Field(
