@@ -62,8 +62,8 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     for file in files:
         if name_of(file) in named:
             raise PairingError(
-                f"{named[name_of(file)]} and {file} are pictures of the same camera with the same name: delete or rename "
-                "one of the two"
+                f"{named[name_of(file)]} and {file} are pictures of the same camera with the same name: delete one of them, "
+                "or rename it"
             )
         named[name_of(file)] = file
     return named
