@@ -62,7 +62,7 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     for file in files:
         if name_of(file) in named:
             raise PairingError(
-                f"{named[name_of(file)]} and {file} are pictures of the same camera with the same name: delete one of them, "
+                f"{named[name_of(file)]} and {file} are pictures of one camera with the same name: delete one of them, "
                 "or rename it"
             )
         named[name_of(file)] = file
