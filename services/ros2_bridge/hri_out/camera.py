@@ -71,7 +71,8 @@ class Camera:
             raise UnusableCameraError(f"the camera matrix {image.K} has no usable focal lengths")
         if not geometry.is_rigid(skeleton_from_image, FURTHEST_M):
             raise UnusableCameraError(
-                f"skeleton_from_image {image.skeleton_from_image} is not a rotation and a shift of at most {FURTHEST_M:g} m"
+                f"skeleton_from_image {image.skeleton_from_image} is not a rotation and a shift of at most "
+                f"{FURTHEST_M:g} m"
             )
         given = np.array(image.distortion[:MOST_COEFFICIENTS], dtype=np.float64)
         return cls(
