@@ -65,7 +65,9 @@ def passwords_of(deployment: Deployment, root: Path) -> dict[str, str]:
         try:
             login = login_values(folder.path)
         except SettingsError as error:
-            raise SettingsError(f"{error}. If you delete {folder.path / USER}, a new password is made") from None
+            raise SettingsError(
+                f"{error}. Or delete {folder.path / USER}: 'actum deploy' then makes a new password"
+            ) from None
         if login:
             passwords[login[f"{LOGIN}/user"]] = login[f"{LOGIN}/password"]
         passwords.setdefault(folder.name, secrets.token_urlsafe(PASSWORD_BYTES))

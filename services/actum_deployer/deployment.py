@@ -124,7 +124,7 @@ class Deployment:
         try:
             read = TypeAdapter(cls).validate_json((folder / FILE).read_bytes())
             if not read.hosts:
-                raise SettingsError("the list `hosts` is empty")
+                raise SettingsError("the list `hosts` is empty: list at least one host")
             for host in read.hosts:  # as if it had been said to `actum deploy init`
                 host_of(f"{host.name}={host.endpoint}")
                 for sensor in host.sensors:

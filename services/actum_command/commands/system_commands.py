@@ -131,9 +131,9 @@ def up(
     Without options, the system runs with a simulated scene; use --camera 0 for a webcam. A service that ends is started
     again.
 
-    With --sensors left,right, each service serves both sensors. Each sensor has its own source and web page. Give a
-    setting of these once for each sensor, in the order of the sensors, or once for all: --camera 0 --camera 2. Each
-    simulated scene has another --seed.
+    With --sensors left,right, each sensor has its own source and web page; every other service serves both sensors.
+    Give a setting of the source or page once for all sensors, or once for each sensor in their order: --camera 0
+    --camera 2. Each simulated scene has another --seed.
     """
     here = settings(NodeSettings)
     if here.credentials is not None:

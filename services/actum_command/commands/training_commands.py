@@ -47,8 +47,8 @@ PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HE
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
 SeedOption = Annotated[int, typer.Option(min=0, help=SEED_HELP)]
 JOBS_HELP = (
-    "parts of a training that run at the same time; each takes memory. Default: the number of processors. The model is "
-    "the same with any number"
+    "number of parts of a training that run at the same time; each part takes memory. Default: the number of "
+    "processors. The number does not change the model"
 )
 ADD_TO_HELP = (
     "add the recorded examples to this model, which keeps its maps, instead of training a new one. The recordings may "

@@ -67,10 +67,10 @@ class BodyReader:
         topic = self._by_name[foreign.topic]
         try:
             if len(foreign.payload) > MOST_BYTES:
-                raise NotThatTypeError(f"{len(foreign.payload)} bytes; at most {MOST_BYTES} are allowed")
+                raise NotThatTypeError(f"it has {len(foreign.payload)} bytes; at most {MOST_BYTES} are allowed")
             message = from_cdr(foreign.payload, topic.type)
         except NotThatTypeError as error:
-            self._counters.reject("bad_body_message", f"{topic.name} is no {topic.type}: {error}")
+            self._counters.reject("bad_body_message", f"a message on {topic.name} is not a valid {topic.type}: {error}")
             return []
         skeletons = list(self._readers[topic](message, foreign))
         self._counters.counts["skeletons"] += len(skeletons)

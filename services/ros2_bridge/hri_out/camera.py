@@ -70,7 +70,10 @@ class Camera:
         if not (0 < image.K[0] < MOST_PX and 0 < image.K[4] < MOST_PX):
             raise UnusableCameraError(f"the camera matrix {image.K} has no usable focal lengths")
         if not geometry.is_rigid(skeleton_from_image, FURTHEST_M):
-            raise UnusableCameraError(f"skeleton_from_image {image.skeleton_from_image} is no place of a camera")
+            raise UnusableCameraError(
+                f"skeleton_from_image {image.skeleton_from_image} is not a rotation and a shift of at most "
+                f"{FURTHEST_M:g} m"
+            )
         given = np.array(image.distortion[:MOST_COEFFICIENTS], dtype=np.float64)
         return cls(
             np.array(image.K, dtype=np.float64).reshape(3, 3),

@@ -71,10 +71,12 @@ def _role(text: str) -> str:
     try:
         named = [name for _, name, *_ in Formatter().parse(text) if name is not None]
     except ValueError as error:
-        raise ValueError(f"{text!r} cannot be used: {error}; write a brace that is meant twice, such as {{{{") from None
+        raise ValueError(f"{text!r} cannot be used: {error}; to write a brace as text, double it: {{{{") from None
     for name in named:
         if name not in PLACEHOLDERS:
-            raise ValueError(f"{{{name}}} stands for nothing: use {', '.join(f'{{{each}}}' for each in PLACEHOLDERS)}")
+            raise ValueError(
+                f"{{{name}}} is not a placeholder: use {', '.join(f'{{{each}}}' for each in PLACEHOLDERS)}"
+            )
     return text
 
 
