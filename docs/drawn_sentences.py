@@ -67,7 +67,10 @@ def _unambiguous(sources: Sources) -> dict[str, str]:
 
 
 def _hole(part: ast.expr, constants: Mapping[str, str]) -> str:
-    """Return a constant that fills a text's hole, or the last name in the hole's expression, in braces."""
+    """Return a constant that fills a text's hole; or, in braces, a calculation, or another expression's last name."""
+    match part:
+        case ast.FormattedValue(value=ast.BinOp() as calculation) | (ast.BinOp() as calculation):
+            return "{" + ast.unparse(calculation) + "}"
     names = [getattr(node, "attr", getattr(node, "id", "")) for node in ast.walk(part)]
     if len(names) > 1 and names[1] in constants:
         return constants[names[1]]

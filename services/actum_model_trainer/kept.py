@@ -55,7 +55,7 @@ class KeptWindows:
         """
         if f"{KEPT}window_coordinates" not in arrays:
             raise KeptError(
-                "the model file contains no training data of the search, so no action can be added to the model: "
+                "the model file does not contain the windows from which a new action would be learnt: "
                 f"{TRAIN_AGAIN}"
             )
         with _naming_damage():

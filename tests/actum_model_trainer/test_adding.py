@@ -163,7 +163,7 @@ def test_a_model_that_keeps_nothing_is_refused() -> None:
         ),
         pytest.param(
             lambda kept: {n: a for n, a in kept.items() if not n.startswith("kept_window")},
-            "no training data of the search",
+            "not contain the windows",
             id="no windows",
         ),
     ],
@@ -257,7 +257,7 @@ def test_an_update_does_not_lose_the_search_where_nothing_of_it_is_kept() -> Non
 
 def test_nothing_is_added_to_a_model_that_keeps_nothing_of_its_search() -> None:
     updated = updated_without_kept()
-    with pytest.raises(TrainingError, match="no training data of the search.*train the model again"):
+    with pytest.raises(TrainingError, match="not contain the windows.*train the model again"):
         add_to(updated, updated.kept, new_samples(), taught().streams)
 
 
