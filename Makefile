@@ -194,7 +194,7 @@ simulated-model: $(STAMP)  ## train the model of the simulated scene anew that c
 	$(BIN)/python -c 'from actum_command.simulated_model import SIMULATED_MODEL, trained; from actum_model_trainer.progress import silent; trained(silent).save(SIMULATED_MODEL)'
 
 background: $(STAMP)  ## make the background anew that training holds against what was taught; half a minute
-	$(BIN)/python -c 'from actum_command.shipped_background import made; from actum_model_trainer.background import SHIPPED, save; save(made(), SHIPPED)'
+	$(BIN)/python -m benchmarks.free_people
 
 schemas: $(STAMP)  ## write the JSON Schemas anew
 	$(BIN)/python -m actum.schemas

@@ -219,7 +219,7 @@ def quality(row: Row, vectors: Array) -> str:
 
 
 def main() -> None:
-    versions = ", ".join(f"{name} {version(name)}" for name in ("minisom", "numpy", "numba"))
+    versions = ", ".join(f"{name} {version(name)}" for name in ("minisom", "numpy"))
     print(f"Python {platform.python_version()}, {versions}; one core; medians of {ROUNDS} interleaved rounds;")
     print("µs per step, per epoch, per frame.")
     for dim in DIMENSIONS:

@@ -15,7 +15,6 @@ import pytest
 from hypothesis import settings
 
 import chromium
-from actum.som.sequential import fastest_kernel
 
 settings.register_profile("patient", deadline=None, max_examples=30)
 settings.register_profile("ci", settings.get_profile("patient"), derandomize=True, max_examples=50)
@@ -64,12 +63,9 @@ def data_folder() -> Path | None:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Compile tests and the kernel of training before several workers and their processes would, each for itself."""
-    if session.config.getoption("numprocesses", None):
-        collecting = None if tests_are_compiled() else subprocess.Popen(COLLECT, cwd=ROOT, stdout=subprocess.DEVNULL)
-        fastest_kernel()
-        if collecting is not None:
-            collecting.wait()
+    """Compile tests before several workers would, each for itself."""
+    if session.config.getoption("numprocesses", None) and not tests_are_compiled():
+        subprocess.run(COLLECT, cwd=ROOT, stdout=subprocess.DEVNULL, check=False)
 
 
 def tests_are_compiled() -> bool:

@@ -20,7 +20,7 @@ from .scene import scene
 from .steps import steps
 
 PAGE = Path(__file__).with_name("results.md")
-LIBRARIES = ("numpy", "numba", "opencv-python-headless")
+LIBRARIES = ("numpy", "opencv-python-headless")
 PARTS: Mapping[str, tuple[str, Callable[[Data], Iterator[str]]]] = {
     "protocols": ("The protocols", protocols),
     "scene": ("Table 2 of the paper", scene),

@@ -1,4 +1,4 @@
-"""Decodes image files and messages to grey levels; refuses huge and damaged ones before memory is allocated."""
+"""Decodes image files to grey levels; refuses huge and damaged ones before memory is allocated."""
 
 import io
 import struct
@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Pixels
-from actum.messages import Image
 from actum.pictures import MOST_SCANS, has_too_many_scans
 
 LARGEST_PIXELS = 10_000 * 10_000  # 100 MB of grey levels; no camera has more
@@ -40,31 +39,6 @@ def read_grey(path: Path) -> Pixels:
         return decode_grey(path.read_bytes(), path.name)
     except OSError as error:
         raise UnusablePictureError(path.name, f"the file cannot be read: {error.strerror}") from None
-
-
-def grey_from_message(image: Image, name: str) -> Pixels:
-    """Decode a colour image message to grey levels (height, width).
-
-    Raises:
-        UnusablePictureError: the image is a depth image, damaged, too large, or not of the size in its message.
-    """
-    if image.format == "jpeg":
-        pixels = decode_grey(image.data, name)
-        if pixels.shape != (image.height, image.width):
-            height, width = pixels.shape
-            raise UnusablePictureError(
-                name, f"the JPEG is {width}x{height}, but its message says {image.width}x{image.height}"
-            )
-        return pixels
-    if image.format != "bgr8" or len(image.data) != image.width * image.height * 3:
-        expected_bytes = image.width * image.height * 3
-        raise UnusablePictureError(
-            name,
-            f"the image has the format {image.format} and {len(image.data)} bytes; expected the format jpeg, or bgr8 "
-            f"with {expected_bytes} bytes",
-        )
-    colours = np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
-    return cv2.cvtColor(colours, cv2.COLOR_BGR2GRAY).astype(np.uint8, copy=False)
 
 
 def decode_grey(data: bytes, name: str) -> Pixels:

@@ -1,8 +1,9 @@
 """Drawing on printed sheets: text, a ruler to check the scale, cells as vector rectangles. Lengths are in mm."""
 
 import io
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 
+import numpy as np
 from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.pdfgen.canvas import Canvas
@@ -44,7 +45,8 @@ class Sheet:
         """Fill the black cells (rows, columns) as one path, so that no renderer leaves hair lines between them."""
         path = self._canvas.beginPath()
         for row, blacks in enumerate(black.tolist()):
-            for start, end in _runs(blacks):
+            edges = np.flatnonzero(np.diff([False, *blacks, False])).tolist()
+            for start, end in zip(edges[::2], edges[1::2], strict=True):
                 bottom = (top - (row + 1) * cell) * mm
                 path.rect((left + start * cell) * mm, bottom, (end - start) * cell * mm, cell * mm)
         self._canvas.drawPath(path, stroke=0, fill=1)
@@ -81,14 +83,3 @@ def document(size_mm: tuple[float, float], title: str, drawers: Sequence[Callabl
 def points_that_fit(text: str, width_mm: float, font: str, largest: float) -> float:
     """Return the font size, at most `largest`, at which a text is at most `width_mm` wide."""
     return float(min(largest, largest * width_mm * mm / stringWidth(text, font, largest)))
-
-
-def _runs(cells: list[bool]) -> Iterable[tuple[int, int]]:
-    """Yield the start and the end, exclusive, of each run of True."""
-    start = None
-    for place, black in enumerate([*cells, False]):
-        if black and start is None:
-            start = place
-        elif not black and start is not None:
-            yield start, place
-            start = None

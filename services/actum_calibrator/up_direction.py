@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from actum.arrays import Array
-from actum.messages import Joint, Skeleton
+from actum.messages import Skeleton
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
 
@@ -86,21 +86,17 @@ def _axis(frame: Skeleton) -> tuple[str, Array | None]:
     if len(frame.agents) > 1:
         return f"{len(frame.agents)} people are visible: only one person may be", None
     joints = frame.agents[0].joints
-    known = {name: _point(joints[INDEX[name]]) for name in ("neck", *_LEGS)}
-    unseen = [name for name, point in known.items() if point is None]
-    if unseen:
-        return f"not visible: {', '.join(unseen)}; step back, or tilt the camera", None
-    points = {name: point for name, point in known.items() if point is not None}
+    named = {name: joints[INDEX[name]] for name in ("neck", *_LEGS)}
+    points = {name: np.array(joint) for name, joint in named.items() if joint and all(map(math.isfinite, joint))}
+    if len(points) < len(named):
+        unseen = ", ".join(name for name in named if name not in points)
+        return f"not visible: {unseen}; step back, or tilt the camera", None
     hips, knees, feet = ((points[f"left_{name}"] + points[f"right_{name}"]) / 2 for name in ("hip", "knee", "foot"))
     parts = [_unit(to - start) for start, to in ((feet, knees), (knees, hips), (hips, points["neck"]))]
     bend_deg = max(_angle_deg(parts[0], parts[1]), _angle_deg(parts[1], parts[2]))
     if not bend_deg <= MOST_BEND_DEG:
         return f"stand straight: the body is bent by more than {MOST_BEND_DEG:g} degrees", None
     return "", _unit(points["neck"] - feet)
-
-
-def _point(joint: Joint) -> Array | None:
-    return None if joint is None or not all(map(math.isfinite, joint)) else np.array(joint)
 
 
 def _unit(vector: Array) -> Array:

@@ -4,11 +4,11 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 
-from actum import keys
+from actum import images, keys
 from actum.messages import Image, Skeleton
 from actum.runtime import Client
 from actum_calibrator.board_views import BoardFinder, View
-from actum_calibrator.grey_images import UnusablePictureError, grey_from_message
+from actum_calibrator.grey_images import UnusablePictureError
 from actum_calibrator.pairs import Pair
 from actum_calibrator.view_collector import PairCollector, ViewCollector
 
@@ -94,8 +94,8 @@ def _views(
             if image is not None:
                 name = f"image at {image.stamp_ns / 1e9:.3f} s"
                 try:
-                    view = finder.find(grey_from_message(image, name), name)
-                except UnusablePictureError:
+                    view = finder.find(images.gray(image), name)
+                except (images.UnusableImageError, UnusablePictureError):
                     view = None
                 yield camera, view
         stop.wait(POLL_S)

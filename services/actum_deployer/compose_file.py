@@ -11,6 +11,7 @@ from actum_deployer.hosts import Host
 from actum_deployer.programs import (
     FILES,
     INSTALLED,
+    MOST_TASKS,
     ROUTER_FILE,
     SETTINGS,
     STATEFUL,
@@ -22,8 +23,6 @@ from actum_deployer.programs import (
 )
 from actum_deployer.roles import BRIDGE, CLASSIFIER, GATEWAY, ROUTER, TRACKER, TRAINER
 
-PIDS = 256
-"""Most processes and threads of a container: some tens are in use."""
 TEMPORARY = "/tmp:size=64m"
 """The only place where a container may write besides its volumes: health file, caches of libraries."""
 DATA = Data(models="/models", state="/state")
@@ -77,7 +76,7 @@ def _closed(program: Program) -> dict[str, Any]:
         "cap_drop": ["ALL"],
         "security_opt": ["no-new-privileges:true"],
         "mem_limit": f"{program.memory_mb}m",
-        "pids_limit": PIDS,
+        "pids_limit": MOST_TASKS,
         "stop_grace_period": "10s",
     }
 

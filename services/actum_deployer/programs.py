@@ -38,7 +38,8 @@ MEMORY_MB = {GATEWAY.name: 3072, TRAINER.name: 4096}
 """Memory that a program may use (MB): pose estimation takes more than others, and so does training."""
 USUAL_MEMORY_MB = 512
 """The same of all others, which take a fifth of it."""
-
+MOST_TASKS = 256
+"""Most processes and threads of a program: some tens are in use."""
 
 STATEFUL = (CLASSIFIER, FUSION)
 """The roles of services that keep what they have answered."""

@@ -12,6 +12,7 @@ from actum_deployer.hosts import Host
 from actum_deployer.programs import (
     FILES,
     INSTALLED,
+    MOST_TASKS,
     ROUTER_FILE,
     SETTINGS,
     STATEFUL,
@@ -34,8 +35,6 @@ StateDirectoryMode=0750
 """What is said of that folder: of the trainer's, whose group the classifier is in, it reads the model."""
 LONGEST_USER = 31
 """Characters of a user's name, by Linux's tools."""
-TASKS = 256
-"""Most processes and threads of a service: some tens are in use."""
 MADE = "# Made by 'actum deploy init'."
 """What stands first in each file of systemd's."""
 UNIT = """\
@@ -137,5 +136,5 @@ def _unit(deployment: Deployment, host: Host, program: Program) -> str:
         command=f"{VENV}/bin/{command}",
         devices="" if sees_devices else "PrivateDevices=yes\n",
         memory_mb=program.memory_mb,
-        tasks=TASKS,
+        tasks=MOST_TASKS,
     )

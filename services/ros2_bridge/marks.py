@@ -4,7 +4,7 @@ import pydantic_core
 from pydantic import ValidationError
 
 from actum.messages import Segment
-from ros2_bridge.message_types import NotThatTypeError, text_of
+from ros2_bridge.message_types import STRING, NotThatTypeError, from_cdr
 
 FIELDS = ("kind", "segment_id", "stamp_ns", "agent", "hand", "label")
 """What a mark may hold; the other fields of a segment message are filled in here."""
@@ -27,7 +27,7 @@ def segment_of(payload: bytes, sensor: str) -> Segment:
             f"the message that marks an action has {len(payload)} bytes; at most {MOST_BYTES} are allowed"
         )
     try:
-        fields = pydantic_core.from_json(text_of(payload), allow_inf_nan=False)
+        fields = pydantic_core.from_json(from_cdr(payload, STRING).data, allow_inf_nan=False)
     except NotThatTypeError as error:
         raise BadMarkError(f"the message that marks an action is not a std_msgs/String: {error}") from None
     except ValueError as error:

@@ -68,15 +68,6 @@ def to_cdr(message: Any) -> bytes:
     return bytes(_store().serialize_cdr(message, message.__msgtype__, little_endian=True))
 
 
-def text_of(payload: bytes) -> str:
-    """Return the text of a String's bytes.
-
-    Raises:
-        NotThatTypeError: they are none.
-    """
-    return str(from_cdr(payload, STRING).data)
-
-
 def from_cdr(payload: bytes, name: str) -> Any:
     """Return the message of a type that bytes hold.
 

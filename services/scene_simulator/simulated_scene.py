@@ -57,11 +57,6 @@ class SceneState:
     doing: str | None = None
     in_view: bool = True
 
-    @property
-    def held(self) -> int | None:
-        """Index of the object in the hand, or None."""
-        return self.target if self.segment is not None and self.grip > CLOSED else None
-
     def camera_from_object(self, row: int) -> Array:
         """Return the pose (4, 4) of an object: x right and y up on the marked face, z out of it."""
         sin, cos = np.sin(self.yaw_rad[row]), np.cos(self.yaw_rad[row])

@@ -1527,6 +1527,112 @@ static PyObject *comotion(PyObject *module, PyObject *args)
     return released(b, 6);
 }
 
+/* Steps of sequential training of a map whose weights are (dim, stride): each moves the units around an input's winner
+   towards the input. The same pass adds up the distances to the next input, each sum component after component, of four
+   components at a time unless one is missing (NaN). */
+typedef struct {
+    void *weights;
+    const void *inputs, *over_rows, *over_cols;
+    Py_ssize_t steps, dim, stride, rows, cols;
+} Learning;
+
+#define LEARNING(REAL)                                                                                                     \
+VECTORISED static void pull_four_##REAL(REAL *restrict weights, Py_ssize_t stride, const REAL *x, const REAL *next,        \
+                                        const REAL *restrict share, REAL *restrict distances2)                             \
+{                                                                                                                          \
+    for (Py_ssize_t unit = 0; unit < stride; unit++) {                                                                     \
+        REAL distance2 = distances2[unit];                                                                                 \
+        for (int d = 0; d < 4; d++) {                                                                                      \
+            REAL weight = weights[d * stride + unit] + (x[d] - weights[d * stride + unit]) * share[unit];                  \
+            weights[d * stride + unit] = weight;                                                                           \
+            distance2 += (next[d] - weight) * (next[d] - weight);                                                          \
+        }                                                                                                                  \
+        distances2[unit] = distance2;                                                                                      \
+    }                                                                                                                      \
+}                                                                                                                          \
+/* pull the weights towards x, where there is one, then measure their distances to the next input */                       \
+VECTORISED static void pull_##REAL(const Learning *l, const REAL *x, const REAL *next, const REAL *share,                  \
+                                   REAL *restrict distances2)                                                              \
+{                                                                                                                          \
+    Py_ssize_t d = 0, known = x != NULL;                                                                                   \
+    for (Py_ssize_t i = 0; i < l->dim && known; i++)                                                                       \
+        known = x[i] == x[i] && next[i] == next[i];                                                                        \
+    memset(distances2, 0, l->stride * sizeof(REAL));                                                                       \
+    for (; known && d + 4 <= l->dim; d += 4)                                                                               \
+        pull_four_##REAL((REAL *)l->weights + d * l->stride, l->stride, x + d, next + d, share, distances2);               \
+    for (; d < l->dim; d++) {                                                                                              \
+        REAL *restrict weights = (REAL *)l->weights + d * l->stride;                                                       \
+        for (Py_ssize_t unit = 0; unit < l->stride && x != NULL && x[d] == x[d]; unit++)                                   \
+            weights[unit] += (x[d] - weights[unit]) * share[unit];                                                         \
+        for (Py_ssize_t unit = 0; unit < l->stride && next[d] == next[d]; unit++)                                          \
+            distances2[unit] += (next[d] - weights[unit]) * (next[d] - weights[unit]);                                     \
+    }                                                                                                                      \
+}                                                                                                                          \
+VECTORISED static Py_ssize_t winner_##REAL(const REAL *distances2, Py_ssize_t units)                                       \
+{                                                                                                                          \
+    Py_ssize_t unit = 0;                                                                                                   \
+    REAL of_lane[LANES], least = distances2[0];                                                                            \
+    for (int lane = 0; lane < LANES; lane++)                                                                               \
+        of_lane[lane] = least;                                                                                             \
+    for (; unit + LANES <= units; unit += LANES)                                                                           \
+        for (int lane = 0; lane < LANES; lane++)                                                                           \
+            of_lane[lane] = distances2[unit + lane] < of_lane[lane] ? distances2[unit + lane] : of_lane[lane];             \
+    for (; unit < units; unit++)                                                                                           \
+        least = distances2[unit] < least ? distances2[unit] : least;                                                       \
+    for (int lane = 0; lane < LANES; lane++)                                                                               \
+        least = of_lane[lane] < least ? of_lane[lane] : least;                                                             \
+    for (unit = 0; unit < units - 1 && distances2[unit] != least;)                                                         \
+        unit++;                                                                                                            \
+    return unit;                                                                                                           \
+}                                                                                                                          \
+static void learn_##REAL(const Learning *l, REAL *share, REAL *distances2)                                                 \
+{                                                                                                                          \
+    const REAL *x = l->inputs, *over_rows = l->over_rows, *over_cols = l->over_cols;                                       \
+    pull_##REAL(l, NULL, x, NULL, distances2);                                                                             \
+    for (Py_ssize_t step = 0; step < l->steps; step++, x += l->dim, over_rows += l->rows, over_cols += l->cols) {          \
+        Py_ssize_t winner = winner_##REAL(distances2, l->rows * l->cols);                                                  \
+        for (Py_ssize_t row = 0; row < l->rows; row++)                                                                     \
+            for (Py_ssize_t col = 0; col < l->cols; col++)                                                                 \
+                share[row * l->cols + col] = over_rows[Py_ABS(row - winner / l->cols)]                                     \
+                                             * over_cols[Py_ABS(col - winner % l->cols)];                                  \
+        pull_##REAL(l, x, step + 1 < l->steps ? x + l->dim : x, share, distances2);                                        \
+    }                                                                                                                      \
+}
+
+LEARNING(float)
+LEARNING(double)
+
+PyDoc_STRVAR(learned_doc,
+    "learned(weights, inputs, over_rows, over_cols, steps, itemsize)\n--\n\n"
+    "Take all steps of `actum.som.kernel.adapt_in_numpy`, in place, with numbers of so many bytes.");
+static PyObject *learned(PyObject *module, PyObject *args)
+{
+    Py_buffer b[4];
+    Py_ssize_t itemsize;
+    Learning l;
+    if (!PyArg_ParseTuple(args, "w*y*y*y*nn", &b[0], &b[1], &b[2], &b[3], &l.steps, &itemsize))
+        return NULL;
+    Py_ssize_t row = itemsize * (l.steps > 0 ? l.steps : 1);
+    l.weights = b[0].buf, l.inputs = b[1].buf, l.over_rows = b[2].buf, l.over_cols = b[3].buf;
+    l.dim = b[1].len / row, l.rows = b[2].len / row, l.cols = b[3].len / row;
+    l.stride = l.dim ? b[0].len / itemsize / l.dim : 0;
+    char *scratch = PyMem_Calloc(2 * l.stride + 1, itemsize);
+    if (scratch == NULL)
+        PyErr_NoMemory();
+    else if (l.steps <= 0 || !l.rows || !l.cols || l.rows * l.cols > l.stride)
+        PyErr_SetString(PyExc_ValueError, "there is no step, or the map has more units than the weights have columns");
+    else {
+        Py_BEGIN_ALLOW_THREADS
+        if (itemsize == sizeof(float))
+            learn_float(&l, (float *)scratch, (float *)scratch + l.stride);
+        else
+            learn_double(&l, (double *)scratch, (double *)scratch + l.stride);
+        Py_END_ALLOW_THREADS
+    }
+    PyMem_Free(scratch);
+    return released(b, 4);
+}
+
 static PyMethodDef methods[] = {
     {"adapted", adapted, METH_VARARGS, adapted_doc},
     {"added", added, METH_VARARGS, added_doc},
@@ -1540,6 +1646,7 @@ static PyMethodDef methods[] = {
     {"exceeding", exceeding, METH_VARARGS, exceeding_doc},
     {"exponents", exponents, METH_VARARGS, exponents_doc},
     {"interpolated", interpolated, METH_VARARGS, interpolated_doc},
+    {"learned", learned, METH_VARARGS, learned_doc},
     {"left_arm_acts", left_arm_acts, METH_VARARGS, left_arm_acts_doc},
     {"plain_joints_or", (PyCFunction)(void (*)(void))plain_joints_or, METH_FASTCALL, plain_joints_or_doc},
     {"pooled", pooled, METH_VARARGS, pooled_doc},

@@ -29,13 +29,7 @@ class OneEuro:
     steadily at v lags by a time of 1 / (2π f). After a gap of more than half a second the filter restarts.
     """
 
-    def __init__(
-        self,
-        min_cutoff_hz: float = MIN_CUTOFF_HZ,
-        beta_per_m: float = BETA_PER_M,
-        speed_cutoff_hz: float = SPEED_CUTOFF_HZ,
-    ) -> None:
-        self._min_cutoff_hz, self._beta_per_m, self._speed_cutoff_hz = min_cutoff_hz, beta_per_m, speed_cutoff_hz
+    def __init__(self) -> None:
         self._stamp_ns: int | None = None
         self._points = np.zeros(0)
         self._velocity = np.zeros(0)
@@ -47,9 +41,9 @@ class OneEuro:
         else:
             interval_s = (stamp_ns - self._stamp_ns) / SECOND_NS
             derivative = (points - self._points) / interval_s
-            self._velocity = self._velocity + _gain(self._speed_cutoff_hz, interval_s) * (derivative - self._velocity)
+            self._velocity = self._velocity + _gain(SPEED_CUTOFF_HZ, interval_s) * (derivative - self._velocity)
             speed = np.linalg.norm(self._velocity, axis=-1, keepdims=True)
-            cutoff_hz = self._min_cutoff_hz + self._beta_per_m * speed
+            cutoff_hz = MIN_CUTOFF_HZ + BETA_PER_M * speed
             self._points = self._points + _gain(cutoff_hz, interval_s) * (points - self._points)
         self._stamp_ns = stamp_ns
         return self._points

@@ -8,6 +8,7 @@ sees it, with the difference of both ways in it.
 import math
 from collections.abc import Callable, Hashable
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -41,26 +42,14 @@ class Hop:
     shared: Callable[[Any], Hashable]
 
 
-def _instant(message: Message) -> Hashable:
-    return message.stamp_ns
-
-
-def _instant_of_agent(message: Posture | Action) -> Hashable:
-    return message.stamp_ns, message.agent
-
-
-def _segment(message: Segment | Action | Event) -> Hashable:
-    return message.segment_id
-
-
 HOPS = (
-    Hop("image", "skeleton", _instant),
-    Hop("image", "objects", _instant),
-    Hop("skeleton", "posture", _instant),
-    Hop("posture", "partial action", _instant_of_agent),
-    Hop("end mark", "final action", _segment),
-    Hop("final action", "event", _segment),
-    Hop("end mark", "event", _segment),
+    Hop("image", "skeleton", attrgetter("stamp_ns")),
+    Hop("image", "objects", attrgetter("stamp_ns")),
+    Hop("skeleton", "posture", attrgetter("stamp_ns")),
+    Hop("posture", "partial action", attrgetter("stamp_ns", "agent")),
+    Hop("end mark", "final action", attrgetter("segment_id")),
+    Hop("final action", "event", attrgetter("segment_id")),
+    Hop("end mark", "event", attrgetter("segment_id")),
 )
 """What is measured. Services do not mark ends: the end of a segment that the classifier has found is no cause."""
 

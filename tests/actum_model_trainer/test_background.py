@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.free_people.__main__ import made
 
 from actum.node import SECOND_NS
-from actum_command.shipped_background import made
 from actum_model_trainer import background
 from actum_model_trainer.background import FEWEST_FRAMES, LEAST_SPEED_M_S, SHIPPED, save, shipped, windows_of
 from actum_model_trainer.samples import LabelledStream

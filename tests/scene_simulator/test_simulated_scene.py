@@ -6,7 +6,7 @@ import pytest
 from actum.arrays import Array
 from actum.skeletons import INDEX
 from scene_simulator.programme import ACTIONS, Task, balanced_programme
-from scene_simulator.simulated_scene import Scene, SceneState
+from scene_simulator.simulated_scene import CLOSED, Scene, SceneState
 from scene_simulator.trial import Trial
 
 RATE_HZ = 30
@@ -69,7 +69,7 @@ def test_each_action_has_its_own_effect_on_its_object_and_none_on_the_others(seg
 
 def test_the_hand_takes_the_object_along(scene: Scene, segments) -> None:
     for trial, frames in segments:
-        offsets = [hand_of(scene, f) - f.positions_m[trial.target] for f in frames if f.held is not None]
+        offsets = [hand_of(scene, f) - f.positions_m[trial.target] for f in frames if f.grip > CLOSED]
         moving = offsets[len(offsets) // 4 :]
         if trial.task.action != "point":
             np.testing.assert_allclose(moving, np.broadcast_to(moving[-1], (len(moving), 3)), atol=2e-3)

@@ -21,7 +21,7 @@ LIBRARY, COMPILERS = "shared/actum/_compiled.abi3.so", ("cc", "gcc", "clang")
 VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
 OFFLINE = "connection broken by"
 """What pip says of an index that it cannot reach."""
-NOT_IN_ALL = {"foxglove", "mediapipe", "numba", "openni", "pyrealsense2", "rerun"}
+NOT_IN_ALL = {"foxglove", "mediapipe", "openni", "pyrealsense2", "rerun"}
 """What some modules import and the extra `all` leaves out."""
 IMPORT_EVERYTHING = """
 import importlib, importlib.metadata, pkgutil

@@ -10,6 +10,10 @@ from actum_command.commands.recording_options import refuse_output
 from actum_command.commands.terminal import connect_whenever, fail, say
 from actum_command.scene_marks import mark_truth, write_examples
 from scene_simulator.everyday import Choice, Pauses
+from scene_simulator.settings import Settings
+
+SCENE = Settings.model_fields
+"""The settings of the simulated scene, some of which a recording of it has too."""
 
 
 def simulate(
@@ -21,50 +25,11 @@ def simulate(
             help="number of times that the person does each of the five actions; ignored if --everyday is 'only'",
         ),
     ] = 12,
-    actor: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            help=(
-                "number of the simulated person who acts; each person has another body height, tempo and preferred hand"
-            ),
-        ),
-    ] = 0,
-    seed: Annotated[
-        int,
-        typer.Option(
-            min=0, help="seed of the random variation between repetitions; the same seed gives the same movements"
-        ),
-    ] = 0,
-    everyday: Annotated[
-        Choice,
-        typer.Option(
-            help=(
-                "background activities between the actions, such as scratching: none; familiar (only some kinds, to "
-                "train a model with); all (all kinds, to test a model with); only (all kinds, and no actions)"
-            )
-        ),
-    ] = "none",
-    minutes: Annotated[
-        float,
-        typer.Option(
-            min=0,
-            help=(
-                "minimum length of the scene in minutes; the background activities of --everyday fill the time after "
-                "the last action. Ignored if --everyday is none"
-            ),
-        ),
-    ] = 1.0,
-    pauses: Annotated[
-        Pauses,
-        typer.Option(
-            help=(
-                "what the simulated person does between two actions. long: up to three background activities, and "
-                "rests of several seconds; short: at most one background activity, and short rests. Ignored if "
-                "--everyday is none"
-            )
-        ),
-    ] = "long",
+    actor: Annotated[int, typer.Option(min=0, help=SCENE["actor"].description)] = 0,
+    seed: Annotated[int, typer.Option(min=0, help=SCENE["seed"].description)] = 0,
+    everyday: Annotated[Choice, typer.Option(help=SCENE["everyday"].description)] = "none",
+    minutes: Annotated[float, typer.Option(min=0, help=SCENE["minutes"].description)] = 1.0,
+    pauses: Annotated[Pauses, typer.Option(help=SCENE["pauses"].description)] = "long",
 ) -> None:
     """Write a recording of simulated actions with their labels, without images, for training or testing.
 

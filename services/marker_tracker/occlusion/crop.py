@@ -33,12 +33,7 @@ class Crop:
         """Cut a square out of a grey image (height, width), clipped at the image's edges."""
         left, top = max(round(centre_px.real - radius_px), 0), max(round(centre_px.imag - radius_px), 0)
         right, bottom = max(round(centre_px.real + radius_px), 0) + 1, max(round(centre_px.imag + radius_px), 0) + 1
-        part = pixels[top:bottom, left:right]
-        if scale * min(part.shape) < 1:
-            part = part[:0, :0]
-        elif scale < 1:
-            part = np.asarray(cv2.resize(part, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-        return cls(blurred(part), complex(left, top), scale)
+        return cls(blurred(scaled(pixels[top:bottom, left:right], scale)), complex(left, top), scale)
 
     def from_image(self, point_px: complex) -> complex:
         """Map a point x + i y of the image into the crop."""
@@ -54,3 +49,12 @@ def blurred(pixels: Pixels) -> Array:
     if not pixels.size:
         return np.zeros(pixels.shape)
     return np.asarray(cv2.GaussianBlur(pixels.astype(np.float32), (0, 0), BLUR_PX), dtype=np.float64)
+
+
+def scaled(pixels: Pixels, scale: float) -> Pixels:
+    """Scale a grey image (height, width) down; one of less than a pixel becomes empty."""
+    if scale * min(pixels.shape) < 1:
+        return pixels[:0, :0]
+    if scale == 1.0:
+        return pixels
+    return np.asarray(cv2.resize(pixels, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)

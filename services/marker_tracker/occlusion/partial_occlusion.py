@@ -14,6 +14,7 @@ from marker_tracker.detection.decoding import wrong_cells
 from marker_tracker.detection.detector import SAME_PLACE_SIDES
 from marker_tracker.detection.families import family
 from marker_tracker.detection.marker import Key, Marker
+from marker_tracker.occlusion.crop import scaled
 
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom in whole pixels, the last two exclusive."""
@@ -125,8 +126,8 @@ def _follow(stamp_ns: int, pixels: Pixels, last: LastView) -> Marker | None:
     radius_sides = SEARCH_RADIUS_SIDES + SEARCH_SPEED_SIDES_PER_S * (stamp_ns - last.stamp_ns) / SECOND_NS
     left, top, right, bottom = _box(marker, radius_sides * marker.side_px)
     left, top = max(left, 0), max(top, 0)
-    template = _scaled(last.view, scale)
-    window = _scaled(pixels[top : max(bottom, top), left : max(right, left)], scale)
+    template = scaled(last.view, scale)
+    window = scaled(pixels[top : max(bottom, top), left : max(right, left)], scale)
     if window.shape[0] < template.shape[0] or window.shape[1] < template.shape[1]:
         return None
     _, correlation, _, place_px = cv2.minMaxLoc(cv2.matchTemplate(window, template, cv2.TM_CCOEFF_NORMED))
@@ -151,12 +152,3 @@ def _box(marker: Marker, extra_px: float) -> Box:
     x, y = marker.corners_px.T.tolist()
     left, top = math.floor(min(x) - margin), math.floor(min(y) - margin)
     return left, top, math.ceil(max(x) + margin) + 1, math.ceil(max(y) + margin) + 1
-
-
-def _scaled(pixels: Pixels, scale: float) -> Pixels:
-    """Scale a grey image (height, width) down; one of less than a pixel becomes empty."""
-    if scale == 1.0:
-        return pixels
-    if scale * min(pixels.shape) < 1:
-        return pixels[:0, :0]
-    return np.asarray(cv2.resize(pixels, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), dtype=np.uint8)

@@ -2,63 +2,21 @@
 
 import logging
 import threading
-from collections.abc import Callable, Sequence
-from typing import Protocol
+from collections.abc import Sequence
 
 import zenoh
 
 from actum.runtime.place import PlaceTakenError
+from actum.runtime.service import Service
+from actum.runtime.sharing import SharingService
 from actum.runtime.stopping import wait_for
 
 LOOK_S = 0.1
 """How late (s) the end of one service may be noticed."""
 
 
-class Served(Protocol):
-    """What a process runs for one sensor: a service, or one that several processes share.
-
-    Attributes:
-        is_healthy_beside: tells whether the other services of the process work.
-    """
-
-    is_healthy_beside: Callable[[], bool]
-
-    @property
-    def name(self) -> str:
-        """The service's name."""
-        ...
-
-    @property
-    def thread_name(self) -> str:
-        """How the names of its threads begin."""
-        ...
-
-    @property
-    def failed(self) -> bool:
-        """Whether a bug ended it."""
-        ...
-
-    @property
-    def has_ended(self) -> bool:
-        """Whether it no longer serves."""
-        ...
-
-    @property
-    def is_healthy(self) -> bool:
-        """Whether it works."""
-        ...
-
-    def introduce(self) -> None:
-        """Log what is read, and any problem that there is already."""
-        ...
-
-    def serve(self, session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:
-        """Serve until stopped."""
-        ...
-
-    def end_at_bug(self, where: str, error: BaseException, stop: threading.Event) -> None:
-        """Log a bug, and stop."""
-        ...
+Served = Service | SharingService
+"""What a process runs for one sensor: a service, or one that several processes share."""
 
 
 def serve_all(services: Sequence[Served], session: zenoh.Session, stop: threading.Event, settling_s: float) -> None:

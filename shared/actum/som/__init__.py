@@ -20,8 +20,8 @@ A map says how well it fits its inputs and keeps their order, over 8 neighbours 
 >>> som.u_matrix().shape
 (10, 12)
 
-Inputs are rows of numbers, an array or what NumPy makes one of; NaN is a missing value. Where Numba is installed
-sequential training is compiled; the maps are the same to the bit.
+Inputs are rows of numbers, an array or what NumPy makes one of; NaN is a missing value. With a C
+compiler, the installation compiles sequential training; the maps are the same to the bit.
 """
 
 from actum.som.batch import BatchTraining

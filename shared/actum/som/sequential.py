@@ -1,16 +1,16 @@
 """Sequential training: one input after the other moves its winner and the winner's neighbours (Kohonen, 1982)."""
 
 from dataclasses import replace
-from functools import cache
 from typing import Any, Generic
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from actum.core import steps
 from actum.som import blas
 from actum.som.codebook import Map
 from actum.som.inputs import training_vectors
-from actum.som.kernel import Kernel, adapt_in_numpy
+from actum.som.kernel import Kernel, adapt_compiled, adapt_in_numpy
 from actum.som.schedule import Decay, checked_radii
 
 Array = NDArray[Any]
@@ -19,15 +19,9 @@ CHUNK_STEPS = 250
 """Steps whose neighbourhoods are tabulated at once: enough to make the calls cheap, few enough for the cache."""
 
 
-@cache
 def fastest_kernel() -> Kernel:
-    """Return the compiled kernel where Numba can be imported, else the one in NumPy."""
-    try:
-        from actum.som.compiled import compiled_kernel
-
-        return compiled_kernel()
-    except ImportError:
-        return adapt_in_numpy
+    """Return the compiled kernel where it was compiled, else the one in NumPy."""
+    return adapt_in_numpy if steps is None else adapt_compiled
 
 
 class SequentialTraining(Generic[Map]):
@@ -62,7 +56,7 @@ class SequentialTraining(Generic[Map]):
             vectors: the inputs, (n, dim).
             order: (steps,), the rows of `vectors` to learn from, in turn.
             decay: gives each step its α and its radius.
-            kernel: how steps are computed, by default compiled where Numba is installed; the map is the same.
+            kernel: how steps are computed, by default compiled; the map is the same.
 
         Raises:
             ValueError: the vectors do not fit the map, an entry names no row, or α or radius make no sense.

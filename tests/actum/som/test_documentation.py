@@ -16,8 +16,6 @@ PUBLIC = {name: getattr(actum.som, name) for name in actum.som.__all__}
 
 @pytest.mark.parametrize("name", MODULES)
 def test_the_examples_of_the_documentation_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    if name == "actum.som.compiled":
-        pytest.importorskip("numba")
     monkeypatch.chdir(tmp_path)
     module = importlib.import_module(name)
     tried = doctest.testmod(module)

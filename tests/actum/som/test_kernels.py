@@ -1,18 +1,15 @@
 """The compiled kernel against the one in NumPy: the same map to the bit."""
 
-import subprocess
-import sys
-from importlib.util import find_spec
-
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum.som import Schedule, SequentialTraining, Som, adapt_in_numpy
-from actum.som.kernel import Kernel
+from actum.core import steps
+from actum.som import Schedule, SequentialTraining, Som, adapt_in_numpy, sequential
+from actum.som.kernel import Kernel, adapt_compiled
 
-needs_numba = pytest.mark.skipif(find_spec("numba") is None, reason="Numba is not installed")
+needs_compiler = pytest.mark.skipif(steps is None, reason="this installation found no C compiler")
 
 
 def trained(som: Som, vectors: np.ndarray, kernel: Kernel) -> np.ndarray:
@@ -22,7 +19,7 @@ def trained(som: Som, vectors: np.ndarray, kernel: Kernel) -> np.ndarray:
     return training.som.weights
 
 
-@needs_numba
+@needs_compiler
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 @given(
     rows=st.integers(1, 9),
@@ -34,75 +31,30 @@ def trained(som: Som, vectors: np.ndarray, kernel: Kernel) -> np.ndarray:
 def test_both_kernels_give_the_same_map_to_the_bit(
     rows: int, cols: int, dim: int, gaps: float, seed: int, dtype: type
 ) -> None:
-    from actum.som.compiled import compiled_kernel
-
     rng = np.random.default_rng(seed)
     vectors = rng.normal(size=(20, dim)).astype(dtype)
     vectors[:, 1:][rng.random((20, dim - 1)) < gaps] = np.nan
     som = Som.random(rows, cols, dim, rng, dtype)
-    assert trained(som, vectors, compiled_kernel()).tobytes() == trained(som, vectors, adapt_in_numpy).tobytes()
+    assert trained(som, vectors, adapt_compiled).tobytes() == trained(som, vectors, adapt_in_numpy).tobytes()
 
 
-@needs_numba
+@needs_compiler
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])
 def test_both_kernels_take_the_first_of_equals(dtype: type) -> None:
-    from actum.som.compiled import compiled_kernel
-
     som = Som(3, 5, np.zeros((15, 2)).astype(dtype))
     vectors = np.array([[1.0, 1.0]], dtype)
-    for kernel in (adapt_in_numpy, compiled_kernel()):
+    for kernel in (adapt_in_numpy, adapt_compiled):
         weights = trained(som, vectors, kernel)
         assert weights[:, 0].argmax() == 0
-    assert (trained(som, vectors, adapt_in_numpy) == trained(som, vectors, compiled_kernel())).all()
+    assert (trained(som, vectors, adapt_in_numpy) == trained(som, vectors, adapt_compiled)).all()
 
 
-def run(program: str) -> str:
-    done = subprocess.run([sys.executable, "-W", "error", "-c", program], capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
-    return done.stdout
+def test_without_the_compiled_kernel_maps_learn_by_the_one_in_numpy(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sequential, "steps", None)
+    assert sequential.fastest_kernel() is adapt_in_numpy
 
 
-TRAINING = """
-import numpy as np
-from actum.som import Schedule, Som
-from actum.som.kernel import adapt_in_numpy
-from actum.som.sequential import fastest_kernel
-vectors = np.random.default_rng(0).random((50, 3))
-start = Som.random(4, 4, 3, np.random.default_rng(1), np.float32)
-som = start.train(vectors, 99, Schedule((0.5, 0.1), (2.0, 1.0)), np.random.default_rng(2))
-print(fastest_kernel() is adapt_in_numpy, som.weights.tobytes().hex())
-"""
-
-
-@pytest.fixture(scope="module")
-def as_installed() -> str:
-    return run(TRAINING)
-
-
-@pytest.mark.long
-@needs_numba
-def test_without_a_place_for_compiled_code_it_is_compiled_anew(as_installed: str) -> None:
-    """Numba tries each place for its cache with a temporary file."""
-    nowhere = (
-        "import tempfile\ndef refuse(*_, **__): raise PermissionError(13, 'no')\ntempfile.TemporaryFile = refuse\n"
-    )
-    assert run(nowhere + TRAINING) == as_installed
-    assert as_installed.startswith("False")
-
-
-REFUSED = """
-import sys
-class Refusing:
-    def find_spec(self, name, path=None, target=None):
-        if name == "numba":
-            raise ImportError("not here")
-sys.meta_path.insert(0, Refusing())
-"""
-
-
-@pytest.mark.parametrize("hidden", ["import sys\nsys.modules['numba'] = None\n", REFUSED], ids=["absent", "refused"])
-def test_without_numba_the_map_is_the_same(as_installed: str, hidden: str) -> None:
-    by_numpy = run(hidden + TRAINING)
-    assert by_numpy.startswith("True")
-    assert by_numpy.split()[1] == as_installed.split()[1]
+@needs_compiler
+def test_a_map_of_more_units_than_columns_is_refused() -> None:
+    with pytest.raises(ValueError, match="more units than the weights have columns"):
+        adapt_compiled(np.zeros((1, 3)), np.ones((1, 1)), np.ones((1, 2)), np.ones((1, 2)))

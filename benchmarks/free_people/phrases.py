@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from benchmarks.free_people.body import BOTH, FreeBody, FreePose
 
 from actum.arrays import Array
-from scene_simulator.free_body import BOTH, FreeBody, FreePose
 from scene_simulator.motion import SIDES
 
 BOTH_HANDS, ACTING_HAND = 0.40, 0.45

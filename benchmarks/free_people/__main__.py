@@ -1,13 +1,15 @@
-"""The background that comes with actum, and how it is made: simulated people who move freely."""
+"""`python -m benchmarks.free_people`: makes the background that comes with actum."""
 
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from benchmarks.free_people.movement import free_movement
+
 from actum.recorder import Recorder
 from actum.recording import Recording
+from actum_model_trainer.background import SHIPPED, save
 from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.samples import LabelledStream
-from scene_simulator.free_movement import free_movement
 
 PEOPLE = range(2001, 2017)
 """Numbers that no other simulated person has."""
@@ -26,3 +28,7 @@ def made() -> list[LabelledStream]:
                     recorder.write(skeleton)
             recordings.append(Recording(path))
         return samples_from(recordings).streams
+
+
+if __name__ == "__main__":
+    save(made(), SHIPPED)

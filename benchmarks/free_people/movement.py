@@ -3,13 +3,13 @@
 from collections.abc import Iterator
 
 import numpy as np
+from benchmarks.free_people.body import BOTH, RATE_HZ, FreeBody, FreePose
+from benchmarks.free_people.phrases import PHRASES
 
 from actum.arrays import Array
 from actum.messages import Agent, Skeleton
 from actum.node import SECOND_NS
 from scene_simulator.actor import Actor, draw_actor
-from scene_simulator.free_body import BOTH, RATE_HZ, FreeBody, FreePose
-from scene_simulator.free_phrases import PHRASES
 from scene_simulator.inverse_kinematics import Stance, pose
 from scene_simulator.noise import SkeletonNoise, Sway
 from scene_simulator.parameters import load_parameters

@@ -5,13 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from benchmarks.free_people.body import RATE_HZ, FreeBody, FreePose
+from benchmarks.free_people.movement import _joints, _moved, free_movement
+from benchmarks.free_people.phrases import PHRASES
 
 from actum.skeletons import INDEX
 from actum.standard_body import BONES
 from scene_simulator.actor import draw_actor
-from scene_simulator.free_body import RATE_HZ, FreeBody, FreePose
-from scene_simulator.free_movement import _joints, _moved, free_movement
-from scene_simulator.free_phrases import PHRASES
 from scene_simulator.parameters import load_parameters
 
 FASTEST_M_S = {"hand": 7.0, "foot": 15.0, "head": 4.0}

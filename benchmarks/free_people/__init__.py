@@ -1,0 +1,1 @@
+"""Simulated people who move freely, by random numbers: the background that ships is made of them."""
