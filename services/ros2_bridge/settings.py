@@ -52,8 +52,8 @@ class Settings(ServiceSettings):
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
         UNLESS_CHOSEN,
         description=(
-            "the topics to exchange with ROS 2, separated by commas, such as event,mark; default: all except cropped, "
-            "which publishes images of people"
+            "the topics to exchange with ROS 2, separated by commas, such as event,mark; default: all except the topic "
+            "'cropped', because its messages are images of people"
         ),
     )
     ros_hri_mapping: Path | None = Field(
@@ -89,8 +89,8 @@ class Settings(ServiceSettings):
     def _has_a_ros_name(self) -> "Settings":
         if self.namespace and not ROS_NAME.fullmatch(self.namespace):
             raise ValueError(
-                f"{self.namespace!r} is not a ROS namespace: give --ros-namespace parts of letters, digits and '_' "
-                "that do not begin with a digit, such as lab/kinect0"
+                f"{self.namespace!r} is not a ROS namespace: in --ros-namespace, separate names by '/', such as "
+                "lab/kinect0. A name consists of letters, digits and '_', and does not begin with a digit"
             )
         return self
 

@@ -112,7 +112,7 @@ def test_an_attachment_is_number_time_and_who_put_it() -> None:
 
 @pytest.mark.parametrize("namespace", ["a-b", "1a", "a//b", "a/*", "a b"])
 def test_what_is_no_ros_name_is_refused(namespace) -> None:
-    with pytest.raises(ValidationError, match="is not a ROS namespace: give --ros-namespace"):
+    with pytest.raises(ValidationError, match="is not a ROS namespace: in --ros-namespace"):
         Settings(ros_namespace=namespace)
 
 

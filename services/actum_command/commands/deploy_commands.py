@@ -102,9 +102,9 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             metavar="FRAME",
             help=(
-                "publish as the sensor's skeletons the bodies that ROS 2 nodes track, in place of the gateway; FRAME "
-                "is the optical frame of the camera that sees the bodies. Needs --ros2 and a single sensor. Default: "
-                "the gateway of each camera host publishes skeletons"
+                "take the sensor's skeletons from ROS 2 nodes that track bodies, and let the gateway publish none; "
+                "FRAME is the optical frame of the camera that sees the bodies. Needs --ros2 and a single sensor. "
+                "Default: the gateway of each camera host publishes skeletons"
             ),
         ),
     ] = None,

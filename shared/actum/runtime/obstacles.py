@@ -133,8 +133,8 @@ def _with_user(settings: ServiceSettings, user: str | None) -> str:
     name = login.get(f"{LOGIN}/user", user)
     who = f"rejects the login of user {name}" if name else "requires a user name and a password"
     return (
-        f"TLS works, but no session opens: either the router {who} (copy the credentials folder of this program "
-        "again), or the router is frozen (restart the router)"
+        f"TLS works, but no session opens. If the router {who}, copy the credentials folder of this program again. If "
+        "the router is frozen, restart the router"
     )
 
 
