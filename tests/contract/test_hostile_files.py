@@ -16,7 +16,7 @@ from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC, Writer
 
 from actum import keys
-from actum.recorder import Recorder, write_recording
+from actum.recorder import Recorder
 from actum.recording import Recording, RecordingError
 from node_cases import CASES, NOON_NS, photograph
 from recognisers import tiny_model
@@ -103,12 +103,9 @@ def test_a_lens_that_is_covered_makes_no_bomb(tmp_path: Path) -> None:
     """Black raw images are what compresses most of all that is recorded."""
     path = tmp_path / "black.mcap"
     pixels = bytes(640 * 480 * 3)
-    write_recording(
-        path,
-        (photograph(NOON_NS + i, format="bgr8", width=640, height=480, data=pixels) for i in range(100)),
-        person="",
-        source="",
-    )
+    with Recorder(path, person="", source="") as recorder:
+        for i in range(100):
+            recorder.write(photograph(NOON_NS + i, format="bgr8", width=640, height=480, data=pixels))
     assert read(path) == 100
 
 
