@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from actum.messages import Segment, Skeleton
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.training import train_to_spot
@@ -34,9 +34,7 @@ def days(folder: Path) -> list[Recording]:
     """Write recordings of persons 1, 2 and 3."""
     files = [folder / f"day{n}.mcap" for n in (1, 2, 3)]
     for n, file in enumerate(files, start=1):
-        with Recorder(file, person=str(n), source="test") as recorder:
-            for message in day(n):
-                recorder.write(message)
+        write_recording(file, day(n), person=str(n), source="test")
     return [Recording(file) for file in files]
 
 

@@ -1,5 +1,7 @@
 """Synthetic people who do labelled actions one after the other, and a preset small enough for tests."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,65 +9,38 @@ from actum.messages import Segment, Skeleton
 from actum.som import Schedule
 from people import FRAME_NS, STANDING, skeleton
 from som_classifier.attention import MOVING, PostureInput
-from som_classifier.presets import BodyVariation, ConvolutionPreset, MapTraining, PaperPreset, Prior, PyramidPreset
-from som_classifier.spotting.spotting_preset import SpottingPreset
+from som_classifier.presets import PYRAMID, BodyVariation, MapTraining, PaperPreset
 
 FRAMES = 20
 PAUSE_FRAMES = 5
 
-TINY = PyramidPreset(
+TINY = replace(
+    PYRAMID,
     name="tiny",
     units=(6, 6),
     unit_epochs=4,
     unit_radius=(2.0, 0.6),
     relative_contrast=0.5,
-    arm_shares=(0.36, 0.05),
-    levels=(1, 2, 4),
-    overlap=0.25,
-    turns_deg=(-15.0, 15.0),
-    leans_deg=(-10.0, 10.0),
     others=BodyVariation(1, build_sd=0.1, tempo=1.0),
     others_of_few=BodyVariation(2, build_sd=0.1, tempo=0.5),
     few_people=1,
     stages=((0.3, 0.5), (0.7,), (1.0,)),
-    shrinkage=0.15,
-    held_out_share=0.5,
     fewest_scores=200,
-    least_share=0.55,
     concepts=(8, 8),
     concept_epochs=6,
     concept_radius=(3.0, 0.8),
-    relative_concept_contrast=40.0,
-    beta=0.05,
     epochs=5,
-    convolutions=ConvolutionPreset(biases=1, shrinkage=0.3, opinion_weight=0.5, verifier_weight=1.0),
-    known_share=0.95,
-    found_share=0.8,
+    convolutions=replace(PYRAMID.convolutions, biases=1, verifier_weight=1.0),
     background=20,
-    prior=Prior(
-        people=4.0,
-        gain=6.0,
-        gain_where_inferred=4.2,
-        verification=(10.7, -5.2, -1.9),
-        least_likeness=(0.2, 0.3),
-        least_from_one=(0.15, 0.25),
-        log_error=-2.5,
-        threshold=0.3,
-        movement_above=1.0,
-    ),
-    spotting=SpottingPreset(
-        interval_s=0.1,
-        lag_s=0.2,
-        overlap=0.15,
-        duration_weight=0.1,
+    prior=replace(PYRAMID.prior, threshold=0.3),
+    spotting=replace(
+        PYRAMID.spotting,
         windows=4,
         shortest_quantile=0.1,
-        shrinkage=0.4,
         most_windows=600,
         common_shares=(0.0, 0.3),
         folds=2,
         thresholds=(0.3, 0.45, 0.6, 0.75),
-        false_alarm_threshold=0.4,
     ),
 )
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum.skeletons import PARTS
 from actum_model_trainer.sample_reading import samples_from
@@ -30,9 +30,7 @@ def tiny_samples() -> tuple[SegmentSample, ...]:
     skeletons, marks = performance([*HAND_PATHS] * 2)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "performance.mcap"
-        with Recorder(path, person="1", source="test") as recorder:
-            for message in [*skeletons, *marks]:
-                recorder.write(message)
+        write_recording(path, [*skeletons, *marks], person="1", source="test")
         samples = samples_from([Recording(path)]).usable
     return tuple(replace(sample, person="left-handed" if sample.label == "swing" else "1") for sample in samples)
 

@@ -7,7 +7,7 @@ import numpy as np
 from actum import geometry
 from actum.calibration import Calibration
 from actum.messages import Message
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from camera_videos import write_video
 
 SIZE = (64, 48)
@@ -25,7 +25,5 @@ def marker_camera(folder: Path, video: Path | None = None) -> list[str]:
 
 def recording(path: Path, *messages: Message) -> list[str]:
     """Play messages as a recording."""
-    with Recorder(path, person="1", source="test") as recorder:
-        for message in messages:
-            recorder.write(message)
+    write_recording(path, messages, person="1", source="test")
     return ["--source", "recording", "--path", str(path)]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from actum.messages import NONE, Posture, Segment, Skeleton
 from actum.node import Counters
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum_model_trainer.background import counterexamples
 from actum_model_trainer.sample_reading import samples_from
@@ -90,9 +90,7 @@ def _scratch(frames: int, height: float, rng: np.random.Generator) -> list[Joint
 
 
 def recorded(folder: Path, name: str, messages: Iterable[Skeleton | Segment], person: str = "1") -> Recording:
-    with Recorder(folder / f"{name}.mcap", person=person, source="test") as recorder:
-        for message in messages:
-            recorder.write(message)
+    write_recording(folder / f"{name}.mcap", messages, person=person, source="test")
     return Recording(folder / f"{name}.mcap")
 
 

@@ -46,17 +46,6 @@ def test_a_hand_that_is_never_known_was_near_nothing(node, joint) -> None:
     assert (event.object, event.distances_m, event.objects_present) == (None, {}, [1])
 
 
-@pytest.mark.parametrize("label", ["touch", "point"])
-def test_a_hand_lost_in_some_frames_is_judged_by_the_others(node, label) -> None:
-    postures = TOUCH.postures()
-    for i in range(0, len(postures), 2):
-        joints = list(postures[i].joints_m or [])
-        joints[INDEX["right_hand"]] = None
-        postures[i] = postures[i].model_copy(update={"joints_m": joints})
-    (event,) = events_of(node, *postures, *TOUCH.sightings(), action(label))
-    assert event.object is not None and event.object.id == 1
-
-
 @pytest.mark.parametrize("far_m", [2.0**31, 1e308, -1e200])
 def test_an_absurdly_far_object_is_counted_and_left_out(node, far_m) -> None:
     scene = Scene(right_hand=TOUCH.right_hand, objects={1: still((0.1, 0.0, 0.45)), 2: still((far_m, 0.0, 0.0))})

@@ -69,13 +69,6 @@ def test_an_occluded_object_goes_with_the_hand_until_it_is_seen_again(then, unti
     assert np.allclose(event.motion.displacement_m, np.subtract(then, CUP), atol=0.02)
 
 
-def test_the_plain_measure_takes_sightings_alone() -> None:
-    covered = acting_on(CUP, (0.1, 0.18, 0.45), hidden=lambda number, t: number == 1 and t > 0.75)
-    event = event_of(covered, "lift", measure="proximity")
-    assert event.object is not None
-    assert (event.object.carried, event.outcome) == (False, "unmoved")
-
-
 def test_an_object_occluded_by_a_hand_that_moves_another_stays() -> None:
     covered = acting_on(
         CUP, (0.1, 0.0, 0.66), others={2: (0.2, 0.0, 0.45)}, hidden=lambda number, t: number == 2 and t > 0.7

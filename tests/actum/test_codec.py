@@ -19,12 +19,6 @@ def test_a_message_survives_the_wire() -> None:
     assert msgpack.unpackb(frame.attachment) == [1, 3, 7]
 
 
-def test_the_payload_is_a_plain_map_that_stock_msgpack_reads() -> None:
-    plain = msgpack.unpackb(codec.encode(skeleton(7, STANDING)).payload)
-    assert plain["agents"][0]["joints"][0] == STANDING[0].tolist()
-    assert plain["sensor"] == "kinect0"
-
-
 def test_what_is_packed_is_what_the_models_dump_is() -> None:
     """The parts of a message, too, however deep; a message that cannot be packed leaves nothing for the next one."""
     frame = skeleton(1, STANDING, STANDING)
@@ -92,16 +86,6 @@ def test_random_bytes_never_pass_unnamed(payload: bytes) -> None:
         codec.decode(KEY, payload)
     except codec.DecodeError as error:
         assert error.kind in {"not_msgpack", "not_a_map", "wrong_fields"}
-
-
-def test_rejections_have_a_reason_and_no_action() -> None:
-    action = Action(
-        stamp_ns=1, sensor="kinect0", valid=False, reason="no person", agent=0, segment_id="a", start_ns=0, end_ns=1,
-        final=True, action=None, confidence=0.0, activations={}, part=None, frames=0, missed=0,
-    )  # fmt: skip
-    frame = codec.encode(action)
-    assert frame.key == "actum/kinect0/action/0"
-    assert codec.decode(frame.key, frame.payload, frame.encoding) == action
 
 
 @pytest.mark.parametrize("message", MESSAGES, ids=lambda message: message.SCHEMA)

@@ -63,13 +63,6 @@ def test_one_standard_deviation_for_all_axes_is_one_for_each() -> None:
     assert np.array_equal(one.covariance, each.covariance)
 
 
-def test_without_measurements_it_goes_on_and_becomes_less_certain() -> None:
-    estimate, _ = filtered(walked(50, 1))
-    ahead = estimate.predicted(0.5, ACCELERATION_STD_MPS2)
-    assert ahead.position_m == pytest.approx(estimate.position_m + 0.5 * estimate.velocity_mps)
-    assert (np.diag(ahead.covariance) > np.diag(estimate.covariance)).all()
-
-
 def low_passed(points: np.ndarray) -> np.ndarray:
     low_pass = OneEuro()
     return np.array([low_pass.step(round(i * STEP_S * 1e9), point) for i, point in enumerate(points)])

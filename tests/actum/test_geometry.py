@@ -73,10 +73,6 @@ def test_a_posture_knows_neither_the_actors_place_nor_how_the_camera_is_held_and
     np.testing.assert_allclose(scaled_ego(seen), scaled_ego(person), atol=1e-9)
 
 
-def test_different_postures_stay_different() -> None:
-    assert np.abs(scaled_ego(reaching(1.0)) - scaled_ego(STANDING)).max() > 0.2
-
-
 def test_scaling_keeps_each_bones_direction_and_gives_it_its_length() -> None:
     standard = standard_body.scaled(STANDING)
     for parent, child, length_m in standard_body.BONES:

@@ -123,13 +123,6 @@ def test_what_went_before_a_change_does_not_count(change: str) -> None:
     assert estimator.up is not None
 
 
-def test_it_takes_its_time() -> None:
-    estimator = asked(plumb(), frames=FRAMES - 1)
-    assert estimator.up is None
-    estimator.offer(skeleton(FRAMES * FRAME_NS, plumb()))
-    assert estimator.up is not None
-
-
 def test_who_stands_right_is_told_to_stay_whatever_was_wrong_before() -> None:
     estimator = asked(bent(MOST_BEND_DEG + 20), frames=3)
     assert "stand straight" in estimator.instruction

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from actum.messages import AUTO, MANUAL, Message, Segment, Skeleton
+from actum.messages import Message, Segment, Skeleton
 from actum.recorder import Recorder
 from actum.recording import Recording
 from command_lines import invoke, printed, refused, written
@@ -74,17 +74,6 @@ def test_bounds_are_moved_to_a_time_or_by_a_difference(path: Path) -> None:
     label("move", path, 1, "--end", "-0.2")
     assert rows(path)[0].startswith("1 1.00 s 2.57 s")
     assert unmarked(path) == frames
-
-
-def test_a_segment_that_a_classifier_found_is_the_users_once_it_is_moved(tmp_path: Path, waves: Stream) -> None:
-    path = tmp_path / "found.mcap"
-    found = [mark(kind, stamp_ns, "auto-1") for kind, stamp_ns in (("start", 10**9), ("end", 2 * 10**9))]
-    written(path, *waves.skeletons(), *(each.model_copy(update={"origin": AUTO}) for each in found))
-    label("move", path, 1, "--start", "+0.1")
-    assert [(each.origin, each.stamp_ns) for each in marks_of(path, "auto-1")] == [
-        (MANUAL, 1_100_000_000),
-        (MANUAL, 2_000_000_000),
-    ]
 
 
 def test_a_segment_is_relabelled_and_deleted_with_its_answers(path: Path) -> None:
@@ -189,27 +178,6 @@ def test_what_is_no_recording_is_refused(tmp_path: Path) -> None:
 def test_a_picture_of_another_kind_is_refused(path: Path, tmp_path: Path) -> None:
     assert "does not end in .png or .svg" in refusal("picture", path, "-o", tmp_path / "a.gif")
     assert "does not exist" in refusal("picture", path, "-o", tmp_path / "a.png", "--model", tmp_path / "m.npz").lower()
-
-
-def test_segments_of_several_sensors_are_listed_and_changed_one_by_one(path: Path, waves: Stream) -> None:
-    """Also where they share their name and their time, for two sensors may see one action."""
-    first, last = (FIRST_NS + frame * FRAME_NS for frame in waves.truths[0])
-    both = path.with_name("both.mcap")
-    marked = [mark("start", first, "one", "wave"), mark("end", last, "one")]
-    answers = [action(first, last, "one").model_copy(update={"action": name}) for name in ("push", "pull")]
-    of_two = [
-        message.model_copy(update={"sensor": sensor})
-        for sensor, answer in zip(("kinect0", "kinect1"), answers, strict=True)
-        for message in (*marked, answer)
-    ]
-    written(both, *waves.skeletons(first_ns=FIRST_NS), *of_two)
-    kinect0, kinect1 = rows(both)
-    assert kinect0.endswith("answered push 1.00 kinect0") and kinect1.endswith("answered pull 1.00 kinect1")
-    label("move", both, 2, "--end", "+0.1")
-    label("relabel", both, 2, "other")
-    assert rows(both)[0] == kinect0
-    label("delete", both, 2)
-    assert rows(both) == [kinect0.removesuffix(" kinect0")]
 
 
 @pytest.mark.parametrize("seconds", ["1e300", "-1e300"])

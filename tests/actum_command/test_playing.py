@@ -8,7 +8,7 @@ import pytest
 from actum import keys
 from actum.joining import PAUSE_NS
 from actum.messages import AUTO, REPLAY, Image, Message, Objects, Posture, Segment, Skeleton
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum_command.streaming import playable_topics, schedule
 from empty_messages import action, image, mark, skeleton
@@ -20,9 +20,7 @@ Record = Callable[..., Recording]
 def record(tmp_path: Path) -> Record:
     def write(name: str, *messages: Message) -> Recording:
         path = tmp_path / f"{name}.mcap"
-        with Recorder(path, person="1", source="test") as recorder:
-            for message in messages:
-                recorder.write(message)
+        write_recording(path, messages, person="1", source="test")
         return Recording(path)
 
     return write

@@ -85,17 +85,6 @@ def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: s
     assert started == []
 
 
-def test_without_any_the_simulated_scene_is_started(started: list[Program]) -> None:
-    up()
-    assert set(arguments_of(started)) == {"scene_simulator", *processes.SERVICES, "model_trainer", processes.PAGE}
-    assert arguments_of(started)["scene_simulator"] == []
-
-
-def test_the_simulated_scene_is_told_its_settings(started: list[Program]) -> None:
-    up("--actor", "3", "--seed", "2", "--repetitions", "1", "--image-hz", "0")
-    assert arguments_of(started)["scene_simulator"] == ["--actor=3", "--seed=2", "--repetitions=1", "--image-hz=0"]
-
-
 def test_the_page_is_told_its_settings_and_can_be_left_out(started: list[Program]) -> None:
     up("--page-port", "9000", "--page-names", "lab.example")
     assert arguments_of(started)["web_dashboard"] == ["--page-port=9000", "--page-names=lab.example"]

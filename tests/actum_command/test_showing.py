@@ -5,7 +5,7 @@ from pathlib import Path
 
 from actum.codec import DecodeError
 from actum.messages import Message
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum_command.commands.viewed_streams import RecordedStreams, Showing
 from actum_command.viewers.contents import Presence, log_line
@@ -30,9 +30,9 @@ def test_a_mark_before_any_frame_and_what_does_not_decode_are_counted() -> None:
 
 
 def test_a_recording_is_shown_in_order_of_stamp_and_names_its_sensors(tmp_path: Path) -> None:
-    with Recorder(tmp_path / "a.mcap", person="", source="test") as recorder:
-        for stamp_ns in (3, 1, 2):
-            recorder.write(skeleton(stamp_ns, STANDING))
+    write_recording(
+        tmp_path / "a.mcap", (skeleton(stamp_ns, STANDING) for stamp_ns in (3, 1, 2)), person="", source="test"
+    )
     streams, shown = RecordedStreams(Recording(tmp_path / "a.mcap")), list[Message]()
     streams.give(Showing(shown.append), threading.Event())
     assert streams.sensors == ["kinect0"]
@@ -40,9 +40,9 @@ def test_a_recording_is_shown_in_order_of_stamp_and_names_its_sensors(tmp_path: 
 
 
 def test_a_stop_ends_it_at_once(tmp_path: Path) -> None:
-    with Recorder(tmp_path / "a.mcap", person="", source="test") as recorder:
-        for stamp_ns in (1, 2, 3):
-            recorder.write(skeleton(stamp_ns, STANDING))
+    write_recording(
+        tmp_path / "a.mcap", (skeleton(stamp_ns, STANDING) for stamp_ns in (1, 2, 3)), person="", source="test"
+    )
     stop, shown = threading.Event(), list[Message]()
 
     def show(message: Message) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from actum.messages import Segment, Skeleton
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum_model_inspector.answered import AnsweredSegment, answered_segments
 from performers import HAND_PATHS, TINY_OF_EACH_KIND, performance
@@ -23,9 +23,7 @@ def record(tmp_path: Path) -> Record:
 
     def write(skeletons: Sequence[Skeleton], marks: Sequence[Segment], person: str = "2") -> Recording:
         path = tmp_path / "performance.mcap"
-        with Recorder(path, person=person, source="test") as recorder:
-            for message in [*skeletons, *marks]:
-                recorder.write(message)
+        write_recording(path, [*skeletons, *marks], person=person, source="test")
         return Recording(path)
 
     return write

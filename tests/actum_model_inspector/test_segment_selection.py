@@ -1,9 +1,12 @@
+"""Which segments are shown of each action, and how reliable the confidence of all answers is."""
+
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from actum_model_inspector.answered import AnsweredSegment, headline
+from actum_model_inspector.reliability_diagram import bins, calibration_error, labelled_answers, reliability_picture
 from actum_model_inspector.segment_selection import examples, file_names, mistake_name, mistakes
 from som_classifier.model import Recognition
 
@@ -54,3 +57,25 @@ def test_file_names_are_plain_and_no_two_are_alike() -> None:
 )
 def test_a_headline_says_what_was_done_and_what_it_was_taken_for(answered: AnsweredSegment, words: str) -> None:
     assert headline(answered) == words
+
+
+def test_answers_are_sorted_by_tenths_of_confidence() -> None:
+    found = bins([said(0.12), said(0.18, "pull"), said(0.95), said(1.0)])
+    assert [(each.low, each.n, each.correct) for each in found] == [(0.1, 2, 1), (0.9, 2, 2)]
+    assert found[0].confidence == pytest.approx(0.15)
+
+
+def test_who_is_as_sure_as_right_has_no_calibration_error() -> None:
+    assert calibration_error(bins([said(0.75), said(0.75), said(0.75), said(0.75, "pull")])) == pytest.approx(0)
+    assert calibration_error(bins([said(1.0), said(1.0, "pull")])) == pytest.approx(0.5)
+
+
+def test_only_what_has_label_and_answer_is_judged() -> None:
+    both = said(0.5)
+    assert labelled_answers([both, said(0.5, None), REJECTED]) == [both]
+
+
+def test_too_few_answers_make_no_reliability_diagram() -> None:
+    with pytest.raises(ValueError, match="at least 30"):
+        reliability_picture([said(0.5)] * 29)
+    assert reliability_picture([said(0.5)] * 30).axes

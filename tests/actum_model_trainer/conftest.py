@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from actum.messages import Segment, Skeleton
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.samples import SegmentSample
@@ -18,9 +18,7 @@ Record = Callable[..., Recording]
 
 def written(folder: Path, name: str, *messages: Skeleton | Segment, person: str = "1", **fields: str) -> Recording:
     path = folder / f"{name}.mcap"
-    with Recorder(path, person=person, source="test", **fields) as recorder:
-        for message in messages:
-            recorder.write(message)
+    write_recording(path, messages, person=person, source="test", **fields)
     return Recording(path)
 
 

@@ -64,12 +64,6 @@ def test_as_many_people_as_the_prior_is_worth_count_as_much() -> None:
     assert half == pytest.approx(np.sqrt(PRIOR.gain * matched(0.05)))
 
 
-def test_the_more_people_the_more_the_matched_inverse_temperature_counts() -> None:
-    found = [inverse_temperature(0.05, people) for people in (1, 2, 5, 20, 10_000)]
-    assert found == sorted(found)
-    assert found[-1] == pytest.approx(matched(0.05), rel=0.01)
-
-
 @pytest.mark.parametrize("people", [1, 2, 50])
 def test_it_is_never_larger_than_the_matched_one(people: int) -> None:
     assert inverse_temperature(3.0, people) == matched(3.0) < PRIOR.gain
@@ -78,17 +72,6 @@ def test_it_is_never_larger_than_the_matched_one(people: int) -> None:
 def test_each_stage_has_its_own_inverse_temperature() -> None:
     early, late = inverse_temperatures([scored(3.0), scored(0.1)], UPPER, PRIOR, 5, False)
     assert early < 0.5 * late
-
-
-def samples_of(people: int, times: int) -> list[SegmentSample]:
-    """Every action by each person so many times."""
-    one = tiny_samples()[0]
-    return [
-        replace(one, person=str(person), label=label)
-        for person in range(people)
-        for label in ("lift", "push")
-        for _ in range(times)
-    ]
 
 
 def still_maps() -> FirstMaps:

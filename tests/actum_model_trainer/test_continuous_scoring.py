@@ -205,20 +205,6 @@ def test_a_truth_in_pieces_and_truths_in_one_are_counted() -> None:
     assert (scores.fragmentations, scores.merges) == (0, 0)
 
 
-def test_recall_at_a_false_alarm_a_minute_leaves_the_unsure_out() -> None:
-    """Ten seconds less than two minutes of background: one false detection may stay, and not both."""
-    answers = [
-        found("lift", 10, 12, confidence=0.9),
-        found("lift", 40, 41, confidence=0.8),
-        found("push", 20, 24, confidence=0.7),
-        found("lift", 50, 51, confidence=0.6),
-        found("drink", 30, 31, confidence=0.5),
-    ]
-    truths_ = [LIFT, PUSH, done("drink", 30, 31)]
-    assert scored(answers, truths_, minutes=1.95).recall_at_rate == pytest.approx(2 / 3)
-    assert scored(answers, truths_, minutes=2.2).recall_at_rate == 1.0
-
-
 @given(detections, truths)
 def test_recall_at_a_false_alarm_a_minute_is_the_best_of_all_thresholds(
     given_: list[Detection], truths_: list[Truth]

@@ -88,26 +88,6 @@ def test_an_action_that_nobody_else_does_is_scored_by_axes_that_know_it() -> Non
     assert (found.cross_validated_scores[~own_action] != found.training_scores[~own_action]).all()
 
 
-def test_the_less_shrinkage_the_nearer_to_the_indicators() -> None:
-    vectors, indicators = training()
-    errors = [
-        np.abs(fit_discriminants(vectors, indicators, FOLDS, s).training_scores - indicators).max()
-        for s in (1e-6, 1e-2, 1.0, 1e4)
-    ]
-    assert errors == sorted(errors)
-    assert errors[0] < 1e-3
-    assert errors[-1] == pytest.approx(1 - 1 / ACTIONS, abs=1e-3)
-
-
-def test_cross_validated_scores_are_worse_than_training_scores() -> None:
-    vectors, indicators = training()
-    found = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE)
-    training_error, cross_validated_error = (
-        np.square(scores - indicators).mean() for scores in (found.training_scores, found.cross_validated_scores)
-    )
-    assert training_error < cross_validated_error
-
-
 MANY = [f"{number:02}" for number in range(MAX_PERSON_FOLDS + 3)]
 
 

@@ -65,11 +65,6 @@ def test_only_the_attended_part_is_learned(samples: list[SegmentSample]) -> None
     assert models[0].metadata.attention == "right_arm"
 
 
-def test_median_neighbour_distance_by_hand() -> None:
-    """Nearest neighbours are 1, 1, 2 and 6 away."""
-    assert median_neighbour_distance2(np.array([[0.0], [1.0], [3.0], [9.0]])) == (1 + 4) / 2
-
-
 def test_median_neighbour_distance_of_many_is_that_of_all_pairs() -> None:
     vectors = np.random.default_rng(0).random((200, 4))
     distances2 = ((vectors[:, None] - vectors) ** 2).sum(axis=2) + np.diag(np.full(200, np.inf))

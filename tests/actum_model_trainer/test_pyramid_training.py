@@ -59,10 +59,6 @@ def without_arms(sample: SegmentSample) -> SegmentSample:
     return replace(sample, **hidden)
 
 
-def test_axes_are_fitted_to_what_the_recogniser_pools(samples: list[SegmentSample]) -> None:
-    assert_fitted(trained(samples, PLAIN), samples, (1.0,), atol=0.02)
-
-
 def test_a_model_of_one_person_knows_what_is_none_of_its_actions(samples: list[SegmentSample]) -> None:
     one = [replace(sample, person="1") for sample in samples]
     model = trained(one)
@@ -279,17 +275,6 @@ def test_a_handful_of_samples_is_enough(samples: list[SegmentSample], counts: tu
     for people in (["1"] * len(few), [str(k) for k in range(len(few))]):
         model = trained([replace(sample, person=person) for sample, person in zip(few, people, strict=True)])
         assert [answer(model, encoded(model, sample)).label for sample in few] == [sample.label for sample in few]
-
-
-def test_a_source_without_legs_teaches_what_it_sees(samples: list[SegmentSample]) -> None:
-    legs = np.isin(np.arange(15), [INDEX[name] for name in INDEX if name.endswith(("knee", "foot"))])[:, None]
-    legless = [
-        replace(sample, **{name: np.where(legs, np.nan, getattr(sample, name)) for name in ("postures", "velocities")})
-        for sample in samples
-    ]
-    model = trained(legless)
-    for tests in (legless, samples):
-        assert [answer(model, encoded(model, sample)).label for sample in tests] == [s.label for s in samples]
 
 
 def test_samples_that_all_move_alike_are_refused(samples: list[SegmentSample]) -> None:

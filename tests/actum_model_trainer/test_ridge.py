@@ -74,13 +74,6 @@ def test_as_many_directions_as_inputs_change_nothing() -> None:
     np.testing.assert_allclose(whole.offsets, basis.offsets(reduced.offsets, axes), atol=1e-5)
 
 
-def test_directions_are_orthonormal_also_those_added_for_other_vectors() -> None:
-    vectors, _ = rows(40)
-    basis = Basis.of(vectors[:10], 6).extended(vectors[10:], 7)
-    assert basis.rank == 13
-    np.testing.assert_allclose(basis.directions.T @ basis.directions, np.eye(13), atol=1e-5)
-
-
 def test_coordinates_can_be_moved_to_another_basis() -> None:
     vectors, _ = rows()
     one, other = Basis.of(vectors, 12), Basis.of(vectors[5:20] + 1, 12)

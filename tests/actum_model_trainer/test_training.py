@@ -23,11 +23,6 @@ def labels(model: Model, samples: list[SegmentSample]) -> list[str]:
 
 
 @each_preset
-def test_every_training_sample_is_learned(samples: list[SegmentSample], preset: Preset) -> None:
-    assert labels(train(samples, preset), samples) == [sample.label for sample in samples]
-
-
-@each_preset
 def test_a_person_not_trained_on_is_recognised(samples: list[SegmentSample], preset: Preset) -> None:
     model = train([sample for sample in samples if sample.person != "2"], preset)
     unseen = [sample for sample in samples if sample.person == "2"]

@@ -16,7 +16,7 @@ from benchmarks.continuous.rocket_windows import INSTANTS, Scored, decoded, resa
 from benchmarks.continuous.streams import Fold, Stream, folds, stream_of
 from benchmarks.continuous.windows import NONE, durations_s, overlap_share, sliding, training_windows
 
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum_dataset_importer.importing import import_msrc12_composed
 from actum_dataset_importer.msrc12 import GESTURES
@@ -33,9 +33,7 @@ CLASSES = [NONE, "lift", "push"]
 
 def stream(folder: Path, person: int = 1, actions: tuple[str, ...] = ("lift", "push", "swing") * 3) -> Stream:
     skeletons, marks = performance([*actions], seed=person)
-    with Recorder(folder / f"{person}.mcap", person=str(person), source="test") as recorder:
-        for message in [*skeletons, *marks]:
-            recorder.write(message)
+    write_recording(folder / f"{person}.mcap", [*skeletons, *marks], person=str(person), source="test")
     return stream_of(Recording(folder / f"{person}.mcap"))
 
 

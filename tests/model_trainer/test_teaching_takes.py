@@ -224,14 +224,6 @@ def test_frames_that_come_late_or_twice_are_left_out(teacher: Teacher) -> None:
     assert [each.stamp_ns for each in stored] == [each.stamp_ns for each in frames]
 
 
-def test_somebody_who_only_stands_is_not_counted(teacher: Teacher) -> None:
-    teacher.ask("record", set="kitchen", label="wave")
-    teacher.see(Stream().then(rest(20)).skeletons(noise_m=0.008, first_ns=10**9))
-    told = teacher.tick().recording
-    teacher.ask("discard")
-    assert told is not None and (told.counted, told.phase) == (0, "waiting")
-
-
 def test_every_command_says_what_it_does_and_what_each_of_its_fields_is(teacher: Teacher) -> None:
     for command in described(teacher.trainer.commands).commands:
         assert command.description.endswith("."), command.name

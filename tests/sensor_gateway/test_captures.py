@@ -143,13 +143,6 @@ def test_a_device_that_cannot_be_opened_is_lost_with_the_cameras_that_there_are(
         capture.next(0.0)
 
 
-def test_a_device_that_cannot_be_opened_is_lost(tmp_path: Path) -> None:
-    capture = LiveCapture(str(tmp_path / "video9"))
-    wait_until(lambda: capture.over, "it has been tried")
-    with pytest.raises(CameraLostError, match="cannot be opened"):
-        capture.next(0.0)
-
-
 def test_a_file_that_is_there_is_played_and_all_else_is_a_device(tmp_path: Path) -> None:
     played = capture_of(str(write_video(tmp_path / "a.avi")), None)
     other = capture_of(str(tmp_path / "gone.avi"), None)

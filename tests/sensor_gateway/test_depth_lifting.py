@@ -178,10 +178,6 @@ def test_without_depth_people_are_placed_as_by_colour_alone() -> None:
     assert found.depth_std_m == alone.depth_std_m is not None
 
 
-def test_a_measured_distance_is_not_said_to_be_inferred() -> None:
-    assert lifted(landmarks_of(person(), LENS), LENS, PLAIN).depth_std_m is None
-
-
 def test_somebody_half_out_of_the_image_is_lifted_by_what_is_in_it() -> None:
     body = person(at_m=(1.25, 0.1, 2.5))
     found = lifted(landmarks_of(body, LENS, model_size=1.1), LENS, depth(body))

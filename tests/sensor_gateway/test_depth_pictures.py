@@ -55,14 +55,6 @@ def test_a_calibration_goes_before_the_devices_lens() -> None:
     assert skeleton.valid
 
 
-def test_a_calibration_for_another_size_is_said() -> None:
-    images, skeleton = seen(DepthOptics(calibration=calibration(640)), picture())
-
-    assert not images
-    assert not skeleton.valid
-    assert skeleton.reason == "image_size_mismatch: 320x240, calibrated for 640x240"
-
-
 @given(st.lists(st.integers(0, 2**40), min_size=1, max_size=20))
 def test_a_devices_intervals_are_kept_and_the_first_stamp_is_the_hosts_time(stamps: list[int]) -> None:
     clock, rising = DeviceClock(lambda: 10**18), sorted(stamps)

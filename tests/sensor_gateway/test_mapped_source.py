@@ -6,7 +6,7 @@ import pytest
 from pydantic import ValidationError
 
 from actum.messages import Image, Message, Posture, Skeleton
-from actum.recorder import Recorder
+from actum.recorder import write_recording
 from people import reaches
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
@@ -46,9 +46,7 @@ def test_up_must_be_a_direction(up: list[float]) -> None:
 @pytest.fixture
 def recording(tmp_path: Path) -> Path:
     path = tmp_path / "reaches.mcap"
-    with Recorder(path, person="1", source="test") as recorder:
-        for message in reaches(20):
-            recorder.write(message)
+    write_recording(path, reaches(20), person="1", source="test")
     return path
 
 

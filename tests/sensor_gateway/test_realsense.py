@@ -166,8 +166,6 @@ def test_a_lens_as_opencv_has_it_is_taken_as_it_is() -> None:
 
 @pytest.mark.skipif(len(rs.context().query_devices()) > 0, reason="a RealSense camera is connected")
 def test_without_a_camera_the_source_says_so_at_once_and_later_tries_again() -> None:
-    if len(rs.context().query_devices()):
-        pytest.skip("a RealSense camera is connected")
     clock, opened = [START_NS], []
 
     def pause(seconds: float) -> None:

@@ -65,14 +65,6 @@ def test_the_same_weights_are_drawn_in_either_precision() -> None:
     assert (double.weights.astype(np.float32) == single.weights).all()
 
 
-def test_excess_distances_and_winner_by_hand() -> None:
-    som = line_map()
-    assert som.excess2(np.array([3.0])).tolist() == [5, 0, 45]
-    assert som.excess2s([[3.0], [11.0]]).tolist() == [[5, 0, 45], [120, 99, 0]]
-    assert som.bmu(np.array([3.0])) == 1
-    assert som.best_two([[3.0], [11.0], [0.25]]).tolist() == [[1, 0], [2, 1], [0, 1]]
-
-
 def test_the_first_of_equal_units_wins() -> None:
     som = Som(1, 3, np.array([[0.0], [2.0], [2.0]]))
     assert [som.bmu(np.array([x])) for x in (1.0, 2.0)] == [0, 1]

@@ -250,19 +250,6 @@ def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> 
     assert "pose_preprocessor, 1 alive" in lines
 
 
-def test_drops_are_shown(monkeypatch: pytest.MonkeyPatch) -> None:
-    drops = {"actum/kinect0/skeleton": 3}
-    assert examined(drops=drops).drops == "skeleton 3"
-    _, output = diagnosed(monkeypatch, System(status("som_classifier", drops=drops)))
-    assert "dropped" in output
-
-
-def test_a_state_that_looks_like_markup_is_shown_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    code, output = diagnosed(monkeypatch, System(status("som_classifier", state="camera lost [/x]")))
-    assert code == 1
-    assert "som_classifier: camera lost [/x]" in output
-
-
 def test_what_a_model_cannot_is_told_and_is_no_problem(monkeypatch: pytest.MonkeyPatch) -> None:
     """The states are those of the classifier, so that they are known again."""
     for note in (CANNOT, NO_BACKGROUND):
