@@ -55,8 +55,7 @@ class KeptWindows:
         """
         if f"{KEPT}window_coordinates" not in arrays:
             raise KeptError(
-                "the model file does not contain the windows from which a new action would be learnt: "
-                f"{TRAIN_AGAIN}"
+                f"the model file does not contain the windows from which a new action would be learnt: {TRAIN_AGAIN}"
             )
         with _naming_damage():
             coordinates = arrays[f"{KEPT}window_coordinates"].astype(np.float32)

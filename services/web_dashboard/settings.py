@@ -53,8 +53,8 @@ class Settings(ServiceSettings):
     page_guarded: bool = Field(
         False,
         description=(
-            "let other machines open the web page without --page-token; use this only if something else controls "
-            "access, such as a container whose port is published on 127.0.0.1 only"
+            "let others than this machine open the web page without --page-token. Use this only if access is "
+            "restricted in another way: in a container, for example, whose host publishes the port on 127.0.0.1 only"
         ),
     )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(

@@ -102,7 +102,7 @@ def _from_jpeg(image: Image, flags: int) -> Pixels:
     pixels = cv2.imdecode(np.frombuffer(image.data, dtype=np.uint8), flags | cv2.IMREAD_IGNORE_ORIENTATION)
     if pixels is None or pixels.shape[:2] != (image.height, image.width):
         raise UnusableImageError(
-            "undecodable_image", f"the JPEG of {len(image.data)} bytes is damaged and cannot be decoded"
+            "undecodable_image", f"the JPEG of {len(image.data)} bytes is damaged or incomplete: send a whole JPEG file"
         )
     return pixels.astype(np.uint8, copy=False)
 

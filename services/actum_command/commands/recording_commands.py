@@ -93,8 +93,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--events",
             help=(
-                "run as a service that keeps a history in files in the folder OUTPUT. The history has three kinds of "
-                "messages: events, the classifier's final answers, and the start and end marks"
+                "run as a service that keeps a history in files in the folder OUTPUT. The history holds the "
+                "events, the start and end marks, and the classifier's final answers"
             ),
         ),
     ] = False,

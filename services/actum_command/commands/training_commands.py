@@ -29,12 +29,11 @@ PRESET_HELP = (
     f"{DEFAULT.name} is more accurate"
 )
 SET_HELP = (
-    f"change a setting of --preset {PAPER.name}; may be repeated. Settings: axes=upright (of the person's coordinate "
-    "axes, one is vertical and the others turn smoothly with the body; default) or axes=posture (all axes turn with "
-    "the body, computed anew in each frame); "
-    "origin=torso (positions are measured from the torso; default) or origin=hips; attention=PART, the body part whose "
-    f"joints are used: {', '.join(part for part in ATTENTIONS if part != MOVING)} or {MOVING} (the part that moves "
-    "most; default)"
+    f"change a setting of --preset {PAPER.name}; may be repeated. axes=upright (default): one coordinate axis "
+    "stays vertical, and the others turn smoothly with the body. axes=posture: all axes turn with the body in each "
+    "frame. origin=torso (default) or origin=hips: the point from which positions are measured. attention=PART: only "
+    f"this body part's joints are used: {', '.join(part for part in ATTENTIONS if part != MOVING)} or {MOVING} "
+    "(default: the part that moves most)"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (

@@ -52,11 +52,11 @@ def watch(
 ) -> None:
     """Print live messages, one per line with time, key, segment id and content, until Ctrl-C.
 
-    Of the topic intent, a line is printed when the likeliest object changes, when its probability first passes 0.5 and
-    0.9, and when the reach is over; --json prints every message.
+    For the topic 'intent' (the objects that a hand reaches for), a line is printed when the likeliest object changes,
+    when its probability first passes 0.5 and 0.9, and when the reach ends; --json prints every message.
 
     On a terminal, a line at the bottom also shows each person's ongoing action and how complete it is. With --from, the
-    command prints the messages of recordings instead, even of those that 'actum record --events' is still writing.
+    command prints messages from recordings instead, also from one that 'actum record --events' is still writing.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):
