@@ -156,8 +156,8 @@ class ServiceSettings(BaseSettings):
         None,
         description=(
             "a folder in which som_classifier and action_fusion store the last actions and events that they published, "
-            "to publish them again after a restart; all other services ignore it. Default: no folder, so nothing is "
-            "stored"
+            "to publish them again after a restart; all other services ignore it, and so do processes with --share. "
+            "Default: no folder, so nothing is stored"
         ),
     )
     health_file: Path | None = Field(
