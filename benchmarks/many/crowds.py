@@ -64,7 +64,7 @@ class Watch:
             return
         said = self.answers[fields["sensor"]]
         self.twice += fields["segment_id"] in said
-        said[fields["segment_id"]] = Answer(fields["action"], fields["confidence"], fields["reason"])
+        said[fields["segment_id"]] = Answer(*(fields[name] for name in Answer._fields))
 
     def hear_status(self, received: Received) -> None:
         """Note what a service has lost so far."""
@@ -80,8 +80,8 @@ def crowds(model: Path) -> Iterator[str]:
         f"{len(SENSORS)} sensors at 30 frames/s for {SECONDS:.0f} s, and one preprocessor for all. One classifier "
         "serves all sensors, or two share them (`--share`). Each action of everybody is marked, and the search for "
         "unmarked actions is on. Latencies are those from the put of a skeleton to the partial action that follows "
-        "from it. An answer is as offline if its action and its confidence are those that the same steps give without "
-        "any transport."
+        "from it. An answer is as offline if its action, its confidence and its number of frames are those that the "
+        "same steps give without any transport."
     )
     rows = [_row(people * len(SENSORS), count, *_live(people, count, model)) for people, count in CROWDS]
     yield "\n".join((HEAD, *rows))

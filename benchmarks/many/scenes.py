@@ -20,11 +20,15 @@ LATEST_MARK_S = 3.0
 
 
 class Answer(NamedTuple):
-    """What is said of a segment: its action and its confidence, or why there is none."""
+    """What is said of a segment: its action and its confidence, or why there is none, and from how many frames."""
 
     action: str | None
     confidence: float | None
     reason: str | None
+    frames: int
+
+    def __str__(self) -> str:
+        return f"{self.reason or f'{self.action} {self.confidence}'} from {self.frames} frames"
 
 
 def crowd(sensor: str, people: int, seed: int, seconds: float) -> list[Message]:
@@ -65,7 +69,7 @@ def answers(messages: Sequence[Message], model: Model) -> dict[str, Answer]:
 
 def answer(action: Action) -> Answer:
     """Return what a final action says."""
-    return Answer(action.action, action.confidence, action.reason)
+    return Answer(action.action, action.confidence, action.reason, action.frames)
 
 
 def _group(people: int, seed: int) -> Group:

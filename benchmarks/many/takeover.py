@@ -37,6 +37,8 @@ FIRST_KILL_S, BETWEEN_KILLS_S = 10.0, 14.0
 """When the first process is killed, and how long after it the next (s), by which time it has been started again."""
 SETTLING_S = 10.0
 """How long answers may take after the last frame (s)."""
+Heard = defaultdict[tuple[str, str], list[tuple[float, Action]]]
+"""The final actions of each segment, by sensor and name, and when each was heard (s)."""
 LOOK_S = 0.02
 """Interval between two looks at who serves whom (s)."""
 
@@ -45,11 +47,12 @@ def takeover(model: Path, seed: int = 1) -> Iterator[str]:
     """Yield what became of each segment, and how long sensors were without a classifier."""
     scenes = {sensor: crowd(sensor, 1, 20 * n, SECONDS) for n, sensor in enumerate(SENSORS)}
     expected = {sensor: answers(scene, load_model(model)) for sensor, scene in scenes.items()}
-    heard: defaultdict[tuple[str, str], list[Answer]] = defaultdict(list)
+    heard: Heard = defaultdict(list)
 
     def hear(received: Received) -> None:
         if isinstance(received.message, Action) and received.message.final:
-            heard[received.message.sensor, received.message.segment_id].append(answer(received.message))
+            segment = received.message.sensor, received.message.segment_id
+            heard[segment].append((time.monotonic(), received.message))
 
     with ExitStack() as stack:
         supervisor = stack.enter_context(Supervisor(model.with_name("takeover.log")))
@@ -62,7 +65,7 @@ def takeover(model: Path, seed: int = 1) -> Iterator[str]:
             assert client.wait_for_subscriber(keys.SEGMENT, STARTING_S)
         run = Run(supervisor, programs, clients, random.Random(seed))
         run.play({sensor: _postures(scene) for sensor, scene in scenes.items()})
-    yield from _report(run.vacant_s, heard, expected)
+    yield from _report(run, heard, expected)
 
 
 class Run:
@@ -77,6 +80,7 @@ class Run:
     ) -> None:
         self._supervisor, self._programs, self._clients, self._rng = supervisor, programs, clients, rng
         self.vacant_s: list[float] = []
+        self.kills: list[tuple[float, str]] = []
         self._vacant: dict[str, tuple[str, float]] = {}
 
     def play(self, scenes: dict[str, list[Message]]) -> None:
@@ -100,6 +104,7 @@ class Run:
         """Kill a classifier; the sensors that it serves are vacant from now on."""
         served = [sensor for sensor, client in self._clients.items() if _serving(client) == [name]]
         os.kill(self._supervisor.process_id(self._programs[name]), signal.SIGKILL)
+        self.kills.append((time.monotonic(), name))
         self._vacant |= dict.fromkeys(served, (name, time.monotonic()))
 
     def _look(self) -> None:
@@ -129,19 +134,38 @@ def _postures(scene: list[Message]) -> list[Message]:
     return sorted([*postures, *marks], key=lambda message: message.stamp_ns or 0)
 
 
-def _report(
-    vacant_s: list[float], heard: dict[tuple[str, str], list[Answer]], expected: dict[str, dict[str, Answer]]
-) -> Iterator[str]:
+def _report(run: Run, heard: Heard, expected: dict[str, dict[str, Answer]]) -> Iterator[str]:
     marked = ((sensor, name, said) for sensor, each in expected.items() for name, said in each.items())
     asked = {(sensor, name): said for sensor, name, said in marked if not name.startswith("auto-")}
-    alike = sum(heard.get(key) == [said] for key, said in asked.items())
+    differing = [key for key, said in asked.items() if [answer(action) for _, action in heard[key]] != [said]]
     twice = sum(len(said) > 1 for said in heard.values())
     yield (
         f"{len(asked)} marked segments before {len(SENSORS)} sensors, {len(NAMES)} classifiers, {KILLS} kills: "
-        f"{alike} answered once and as by one classifier that nobody kills, {twice} answered more than once, "
-        f"{sum(key not in heard for key in asked)} not answered."
+        f"{len(asked) - len(differing)} answered once and as by one classifier that nobody kills, "
+        f"{twice} answered more than once, {sum(not heard[key] for key in asked)} not answered."
     )
+    if differing:
+        yield "\n".join(_difference(*key, asked[key], heard[key], run.kills) for key in differing)
+    vacant_s = sorted(run.vacant_s)
     yield (
-        f"A sensor whose classifier was killed had another one after {sorted(vacant_s)[len(vacant_s) // 2]:.2f} s "
-        f"(median of {len(vacant_s)}), {max(vacant_s):.2f} s at the most."
+        f"A sensor whose classifier was killed had another one after {vacant_s[len(vacant_s) // 2]:.2f} s "
+        f"(median of {len(vacant_s)}), {vacant_s[-1]:.2f} s at the most."
     )
+
+
+def _difference(
+    sensor: str, name: str, said: Answer, heard: list[tuple[float, Action]], kills: list[tuple[float, str]]
+) -> str:
+    """Return what was answered to a segment, and when, beside what a classifier that nobody kills answers."""
+    others = [f"{answer(action)}{_lasts(action)}, {_since_kill(at_s, kills)}" for at_s, action in heard]
+    return f"- segment {name} of {sensor}: {said} expected; {'; '.join(others) or 'no answer'}"
+
+
+def _lasts(action: Action) -> str:
+    lost = f", {action.missed} frames lost" if action.missed else ""
+    return f", from {action.start_ns / 1e9:.2f} to {(action.end_ns or 0) / 1e9:.2f} s{lost}"
+
+
+def _since_kill(at_s: float, kills: list[tuple[float, str]]) -> str:
+    before = [(killed_s, name) for killed_s, name in kills if killed_s <= at_s]
+    return f"{at_s - before[-1][0]:.2f} s after {before[-1][1]} was killed" if before else "before any kill"

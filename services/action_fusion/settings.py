@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from actum import geometry
 from actum.arrays import Array
-from actum.settings import SharedSettings
+from actum.settings import RememberingSettings
 
 REMEDY = (
     "give the 16 numbers of a 4x4 matrix, row by row, in metres, or the name of a file that contains only these numbers"
@@ -76,7 +76,7 @@ def _content(name: str) -> str:
         raise ValueError(f"{name!r} is neither a list of numbers nor a readable file ({error}): {REMEDY}") from None
 
 
-class Settings(SharedSettings):
+class Settings(RememberingSettings):
     """Settings of the fusion, besides those of every service."""
 
     measure: Literal["joint", "proximity"] = Field(

@@ -47,8 +47,8 @@ class MapContinuation(Continuation):
         if units != len(self.som.weights) or self.shares.shape != shares or not np.isfinite(self.shares).all():
             raise ValueError(
                 f"the prediction of postures does not fit the map: it has associations of {units} units and weights of "
-                f"shape {self.shares.shape}; expected {len(self.som.weights)} units and, without gaps, weights of shape "
-                f"{shares}"
+                f"shape {self.shares.shape}; expected {len(self.som.weights)} units and, without gaps, weights of "
+                f"shape {shares}"
             )
 
     @classmethod

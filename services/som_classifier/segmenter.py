@@ -256,7 +256,6 @@ class Segmenter:
         return closed
 
     def _close_all(self) -> list[ClosedSegment]:
-        self._passed_ns = -1
         return [
             self._reject(segment, "the source started anew")
             if segment.state is SegmentState.OPEN

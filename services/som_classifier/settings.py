@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, FiniteFloat
 from pydantic_settings import NoDecode
 
-from actum.settings import SharedSettings
+from actum.settings import RememberingSettings
 from som_classifier.segmentation import Segmentation, WantedSegments
 from som_classifier.spotting.spotted import SpottingOptions
 
@@ -37,7 +37,7 @@ def _pairs(value: Any) -> Any:
 Names = Annotated[frozenset[str], NoDecode, BeforeValidator(_names)]
 
 
-class Settings(SharedSettings):
+class Settings(RememberingSettings):
     """The settings of the classifier, beside those of every service."""
 
     model: Path | None = Field(

@@ -152,13 +152,6 @@ class ServiceSettings(BaseSettings):
             "people/viewer for the programs of a person who only watches; needs --connect tls/host:port"
         ),
     )
-    state: Path | None = Field(
-        None,
-        description=(
-            "used only by som_classifier and action_fusion: a folder in which they store the last actions and events "
-            "that they published, to publish them again after a restart; default: no folder, so nothing is stored"
-        ),
-    )
     health_file: Path | None = Field(
         None,
         description=(
@@ -219,7 +212,19 @@ class SharedSettings(NodeSettings):
         False,
         description=(
             "share the sensors with all other processes of this service that have this flag: each sensor is served by "
-            "one of these processes, and by another one within 2 s after that process has ended. The processes listen "
-            "to each other's answers instead of storing them in the folder --state"
+            "one of these processes, and by another one within 2 s after that process has ended"
+        ),
+    )
+
+
+class RememberingSettings(SharedSettings):
+    """The settings of a service whose answers a restart must not change."""
+
+    state: Path | None = Field(
+        None,
+        description=(
+            "a folder in which the service stores the last answers that it published, to publish them again after a "
+            "restart. Processes with --share do not use the folder, but listen to each other's answers. Default: no "
+            "folder, so nothing is stored"
         ),
     )

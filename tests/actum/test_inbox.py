@@ -1,4 +1,4 @@
-"""A node's subscriptions end quietly, whatever their threads are doing."""
+"""A node's subscriptions return what was put before, and end quietly, whatever their threads are doing."""
 
 import threading
 
@@ -6,7 +6,14 @@ import pytest
 import zenoh
 
 from actum import keys
-from actum.runtime.inbox import Inbox, Reach
+from actum.codec import decode
+from actum.messages import Posture
+from actum.runtime.inbox import RESUMED_FRAMES_S, RESUMED_S, Inbox, Reach
+from actum.runtime.outbox import Outbox
+from live import wait_until
+from people import postures
+
+FRAMES = postures(0.0, 10.0)
 
 
 @pytest.fixture
@@ -15,7 +22,21 @@ def session() -> zenoh.Session:
     config.insert_json5("mode", '"peer"')
     config.insert_json5("listen/endpoints", "[]")
     config.insert_json5("scouting/multicast/enabled", "false")
+    config.insert_json5("timestamping/enabled", "true")
     return zenoh.open(config)
+
+
+def started(session: zenoh.Session, received: list[Posture]) -> Inbox:
+    """An inbox of postures, as of a service that goes on where another one ended."""
+
+    def receive(sample: zenoh.Sample) -> None:
+        message = decode(str(sample.key_expr), sample.payload.to_bytes(), str(sample.encoding))
+        assert isinstance(message, Posture)
+        received.append(message)
+
+    inbox = Inbox(session, (keys.POSTURE,), "kinect0", Reach(RESUMED_S, RESUMED_S, RESUMED_FRAMES_S, depth=None))
+    inbox.start(receive)
+    return inbox
 
 
 def test_a_subscription_that_is_closed_while_its_message_is_handled_ends_without_an_error(
@@ -38,3 +59,67 @@ def test_a_subscription_that_is_closed_while_its_message_is_handled_ends_without
     assert not inbox.working
     assert errors == []
     session.close()
+
+
+def test_a_subscription_that_is_closed_while_the_past_is_awaited_ends_without_an_error(
+    session: zenoh.Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    errors: list[threading.ExceptHookArgs] = []
+    monkeypatch.setattr(threading, "excepthook", errors.append)
+    held = list[zenoh.Query]()
+    silent = session.declare_queryable(f"{keys.pattern(keys.POSTURE, 'kinect0')}/@adv/**", held.append)
+    inbox = started(session, [])
+    wait_until(lambda: bool(held), "the past is requested")
+    inbox.close()
+    held.clear()
+    wait_until(lambda: not inbox.working, "its threads have ended")
+    silent.undeclare()
+    session.close()
+    assert errors == []
+
+
+def test_what_was_put_before_is_received_though_more_is_put_while_it_is_requested(session: zenoh.Session) -> None:
+    """Zenoh's own subscriber, asked for the past, would drop it: it has a reply to its second request only later."""
+    first, second = list[zenoh.Query](), list[zenoh.Query]()
+    key = keys.key(keys.POSTURE, "kinect0", 1)
+
+    def reply_late(query: zenoh.Query) -> None:
+        if "/pub/" in str(query.key_expr):
+            second.append(query)
+            first.clear()
+        elif not second:
+            first.append(query)
+
+    slow = session.declare_queryable(f"{key}/@adv/**", reply_late)
+    outbox, received = Outbox(session), list[Posture]()
+    before, after = FRAMES[:5], iter(FRAMES[5:])
+    for frame in before:
+        outbox.put(frame)
+    inbox = started(session, received)
+    wait_until(lambda: bool(second), "Zenoh has requested the past of the publisher that it has found")
+
+    def put_more() -> bool:
+        outbox.put(next(after))
+        return any(frame.stamp_ns > before[-1].stamp_ns for frame in received)
+
+    wait_until(put_more, "a frame has come that was put after the requests")
+    second.clear()
+    last = next(after)
+    outbox.put(last)
+    wait_until(lambda: received[-1].stamp_ns == last.stamp_ns, "the last frame has come")
+    inbox.close()
+    slow.undeclare()
+    session.close()
+    assert [frame.stamp_ns for frame in received] == [frame.stamp_ns for frame in FRAMES[: len(received)]]
+
+
+def test_what_several_people_did_before_is_received_in_the_order_in_which_it_was_put(session: zenoh.Session) -> None:
+    outbox, received = Outbox(session), list[Posture]()
+    frames = [frame.model_copy(update={"agent": agent}) for frame in FRAMES[:5] for agent in (2, 1, 3)]
+    for frame in frames:
+        outbox.put(frame)
+    inbox = started(session, received)
+    wait_until(lambda: len(received) == len(frames), "all frames have come")
+    inbox.close()
+    session.close()
+    assert [(frame.stamp_ns, frame.agent) for frame in received] == [(frame.stamp_ns, frame.agent) for frame in frames]

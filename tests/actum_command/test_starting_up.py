@@ -1,13 +1,16 @@
 """What `actum up` starts, which model it uses, and what it prints about both."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
+from actum_command import model_in_use as models
 from actum_command import processes
 from actum_command.__main__ import app
-from actum_command.model_in_use import REMINDER_S, ModelInUse, Reminder, model_in_use
+from actum_command.model_in_use import CLAIM, REMINDER_S, ModelInUse, Reminder, model_in_use
 from actum_command.simulated_model import SIMULATED_MODEL
 from actum_command.supervising import Program
 from recognisers import tiny_model
@@ -107,6 +110,46 @@ def test_a_named_model_is_copied_into_the_trainers_folder_for_one_run(tmp_path: 
         assert model.file.is_relative_to(tmp_path / "teaching")
         assert model.file != other.file, "two systems do not share a model"
     assert list((tmp_path / "teaching").iterdir()) == []
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from actum_command.model_in_use import model_in_use
+with model_in_use(Path(sys.argv[1]), "camera", {"trainer_data": [sys.argv[2]]}):
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_the_folder_that_a_killed_run_has_left_is_deleted_and_that_of_a_running_one_is_not(tmp_path: Path) -> None:
+    named, teaching = tmp_path / "mine.npz", tmp_path / "teaching"
+    tiny_model().save(named)
+    given = {"trainer_data": [str(teaching)]}
+    with model_in_use(named, "camera", given) as running:
+        subprocess.run([sys.executable, "-c", KILLED, named, teaching], check=False)
+        assert len(list(teaching.iterdir())) == 2
+        with model_in_use(named, "camera", given) as model:
+            assert {*teaching.iterdir()} == {running.file.parent, model.file.parent}
+
+
+def test_what_is_no_folder_of_a_killed_run_is_left_alone(tmp_path: Path) -> None:
+    named, teaching = tmp_path / "mine.npz", tmp_path / "teaching"
+    tiny_model().save(named)
+    others = [teaching / "run-notes", teaching / "run-just-begun"]
+    for each in others:
+        each.mkdir(parents=True)
+    (others[1] / CLAIM).touch()
+    with model_in_use(named, "camera", {"trainer_data": [str(teaching)]}):
+        pass
+    assert {*teaching.iterdir()} == {*others}
+
+
+def test_where_files_cannot_be_locked_no_folder_is_deleted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(models, "is_being_written", lambda _file: False)
+    named, given = tmp_path / "mine.npz", {"trainer_data": [str(tmp_path / "teaching")]}
+    tiny_model().save(named)
+    with model_in_use(named, "camera", given) as model, model_in_use(named, "camera", given):
+        assert model.file.exists()
 
 
 def test_the_model_that_ships_is_never_what_a_camera_starts_with(tmp_path: Path) -> None:

@@ -77,6 +77,14 @@ def test_motion_starts_anew_after_a_gap_and_after_a_restart() -> None:
     assert after_gap.motion == after_restart.motion == [0.0] * 5
 
 
+def test_each_posture_names_the_frame_before_it_and_the_first_one_of_a_source_none() -> None:
+    node = PosePreprocessor(PoseSettings.defaults())
+    frames = [skeleton(stamp_ns, reaching(stamp_ns / 10)) for stamp_ns in (7, 9)]
+    restarted = [skeleton(stamp_ns, reaching(stamp_ns / 10), session_id="other") for stamp_ns in (5, 6)]
+    found = postures(*frames, *restarted, node=node)
+    assert [posture.previous_ns for posture in found] == [None, 7, None, 5]
+
+
 @pytest.mark.parametrize(
     ("kind", "frame"),
     [

@@ -53,6 +53,13 @@ def test_answers_of_before_say_nothing_of_another_session() -> None:
     assert [len(closed.frames) for closed in run.closed] == [6]
 
 
+def test_a_mark_that_comes_before_the_first_frame_of_another_session_is_a_mark_of_this_session() -> None:
+    before = Run().feed(*in_session("first", postures()), mark("start", 0), mark("end", 5 * FRAME_NS))
+    run = Run().remember(*(answer(closed, "first") for closed in before.closed))
+    run.feed(mark("start", FRAME_NS, "b"), *in_session("second", postures()), mark("end", 6 * FRAME_NS, "b"))
+    assert run.reasons == [None]
+
+
 def test_after_a_restart_a_segment_whose_first_frames_are_gone_is_rejected() -> None:
     frames = postures(90)
     run = Run().remember().feed(mark("start", 0), mark("end", 60 * FRAME_NS), *frames[30:]).wait(2.3)

@@ -5,10 +5,14 @@ import pytest
 
 from actum.messages import Posture
 from actum.node import SECOND_NS
+from actum.stamps import RESTART_AFTER
 from people import FRAME_NS, STANDING, reaches, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from segmenter_runs import Run, mark, postures, stamps
+
+BACK_NS = 90 * SECOND_NS
+"""How far a clock steps back: further than any segment reaches."""
 
 
 def posed(*people: tuple[np.ndarray, ...]) -> list[Posture]:
@@ -204,6 +208,22 @@ def test_a_source_that_starts_anew_leaves_nothing_open() -> None:
     run = Run().feed(*frames, mark("start", 0, "open"), mark("start", 0, "ended"), mark("end", 20 * FRAME_NS, "ended"))
     run.feed(*restarted)
     assert {c.segment_id: c.reason for c in run.closed} == {"open": "the source started anew", "ended": None}
+
+
+def test_a_clock_that_steps_back_leaves_nothing_open() -> None:
+    run = Run().feed(*postures(10, first_ns=BACK_NS), mark("start", BACK_NS)).feed(*postures(RESTART_AFTER))
+    assert run.reasons == ["the source started anew"]
+
+
+@pytest.mark.parametrize(("first_ns", "anew"), [(0, {"session_id": "other"}), (BACK_NS, {})], ids=["source", "clock"])
+def test_what_was_marked_before_the_stamps_began_anew_does_not_mark_the_same_stamps_again(
+    first_ns: int, anew: dict[str, str]
+) -> None:
+    marks = mark("start", first_ns), mark("end", first_ns + 5 * FRAME_NS)
+    run = Run().feed(*postures(10, first_ns), *marks)
+    assert run.segmenter.is_marked(1, first_ns, first_ns + FRAME_NS)
+    run.feed(*[posture.model_copy(update=anew) for posture in postures(RESTART_AFTER)])
+    assert not run.segmenter.is_marked(1, first_ns, first_ns + FRAME_NS)
 
 
 def test_frames_without_a_posture_belong_to_the_segment_but_not_to_the_recognition() -> None:

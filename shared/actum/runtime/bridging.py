@@ -10,10 +10,11 @@ from zenoh import ext, handlers
 from actum.bridge import Bridge, Foreign, ForeignTopic, Withdrawn
 from actum.messages import Message
 from actum.node import Tick
-from actum.runtime.inbox import ENDING_S, Subscriber
+from actum.runtime.inbox import ENDING_S
 from actum.runtime.outbox import Outbox, Publisher
 from actum.runtime.serving import S, configured, live
 from actum.runtime.step_service import StepService
+from actum.runtime.subscribing import Subscriber
 from actum.settings import ServiceSettings
 
 RING = 256

@@ -9,22 +9,14 @@ from types import TracebackType
 from typing import Any, Self, TypeVar
 
 import zenoh
-from zenoh import ext
 
 from actum import keys
 from actum.commands import MSGPACK, Refusal, packed, unpacked
 from actum.messages import Info, Message
-from actum.runtime.inbox import (
-    ENDING_S,
-    Listening,
-    Received,
-    Subscriber,
-    received,
-    subscribe,
-    subscribe_recovering,
-)
+from actum.runtime.inbox import ENDING_S, Listening, Received, received
 from actum.runtime.outbox import Outbox
 from actum.runtime.session import RouterUnreachableError, connected, secret_config
+from actum.runtime.subscribing import Past, RecoveringSubscriber, Subscriber, subscribe
 from actum.settings import ServiceSettings
 
 T = TypeVar("T")
@@ -128,8 +120,7 @@ class Client:
 
         A service that was started anew offers its last answers once more: the same `segment_id` says the same.
         """
-        history = ext.HistoryConfig(detect_late_publishers=True, max_age=history_s)
-        return self._listening_to(subscribe_recovering(self._session, key_expr, DEEP_RING, history))
+        return self._listening_to(RecoveringSubscriber(self._session, key_expr, DEEP_RING, Past(history_s)))
 
     def _take_each(self, stream: Iterable[T], take: Callable[[T], None]) -> None:
         def run() -> None:

@@ -5,13 +5,11 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import zenoh
-from zenoh import ext, handlers
 
 from actum import keys
 from actum.codec import DecodeError, decode
 from actum.messages import Message
-
-Subscriber = zenoh.Subscriber[zenoh.Handler[zenoh.Sample]] | ext.AdvancedSubscriber[zenoh.Handler[zenoh.Sample]]
+from actum.runtime.subscribing import Kept, Past, RecoveringSubscriber, Subscriber, subscribe
 
 ANSWERED = (keys.SEGMENT, keys.ACTION, keys.EVENT)
 """Topics on which every message counts: lost ones are requested again, and those of the recent past."""
@@ -29,8 +27,6 @@ RESUMED_FRAMES_S = 10.0
 ENDING_S = 1.0
 """How long a thread may take to end once its subscriber is gone (s). It is waited for: one that comes back from Zenoh
 into an interpreter that is ending aborts the process."""
-ANSWER_S = 1.0
-"""How long publishers may take to say what they keep (s)."""
 
 
 @dataclass(frozen=True)
@@ -55,27 +51,10 @@ class Reach:
         """Return the reach where it is not known what was answered, but how long nobody was there to do so (s)."""
         return cls(min(vacant_s, HISTORY_S), min(vacant_s, HISTORY_S))
 
-    def history(self, topic: keys.Topic) -> ext.HistoryConfig | None:
-        """Return the request for a topic's earlier messages, None where there is to be none."""
+    def past(self, topic: keys.Topic) -> Past | None:
+        """Return which earlier messages of a topic are requested, None where there are to be none."""
         oldest_s = self.requested_s if topic in ANSWERED else self.frames_s
-        if not oldest_s:
-            return None
-        depth = min(self.depth or topic.cache, topic.cache)
-        return ext.HistoryConfig(detect_late_publishers=True, max_samples=depth, max_age=oldest_s)
-
-
-def subscribe(session: zenoh.Session, key_expr: str, ring: int) -> Subscriber:
-    """Declare a subscriber to what is put from now on."""
-    return session.declare_subscriber(key_expr, handlers.RingChannel(ring))
-
-
-def subscribe_recovering(
-    session: zenoh.Session, key_expr: str, ring: int, history: ext.HistoryConfig | None
-) -> Subscriber:
-    """Declare a subscriber that also requests what is lost on the way and, by `history`, what was put before it."""
-    recovery = ext.RecoveryConfig(heartbeat=True, periodic_queries=None)
-    channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
-    return ext.declare_advanced_subscriber(session, key_expr, channel, history=history, recovery=recovery)
+        return Past(oldest_s, min(self.depth or topic.cache, topic.cache)) if oldest_s else None
 
 
 class Inbox:
@@ -83,11 +62,14 @@ class Inbox:
 
     def __init__(self, session: zenoh.Session, topics: Sequence[keys.Topic], sensor: str, reach: Reach) -> None:
         answered = [topic for topic in topics if topic in ANSWERED and reach.answered_s < reach.requested_s]
+        older = f"[..now(-{reach.answered_s:.3f}s)]"
         self._left_out = {
-            digest for topic in answered for digest in _kept(session, keys.pattern(topic, sensor), reach.answered_s)
+            _digest(sample)
+            for topic in answered
+            for sample in Kept(session, keys.pattern(topic, sensor), older).samples()
         }
         self._subscribers: list[Subscriber] = [
-            subscribe_recovering(session, keys.pattern(topic, sensor), topic.ring, reach.history(topic))
+            RecoveringSubscriber(session, keys.pattern(topic, sensor), topic.ring, reach.past(topic))
             if topic in (*ANSWERED, *STREAMS)
             else subscribe(session, keys.pattern(topic, sensor), topic.ring)
             for topic in topics
@@ -168,18 +150,6 @@ class Listening:
     def close(self) -> None:
         """End the subscription."""
         self._subscriber.undeclare()
-
-
-def _kept(session: zenoh.Session, pattern: str, older_than_s: float) -> set[int]:
-    """Return which messages publishers keep that were put longer ago (s), each by the clock of who put it."""
-    replies = session.get(
-        f"{pattern}/@adv/**?_time=[..now(-{older_than_s:.3f}s)]",
-        target=zenoh.QueryTarget.ALL,
-        consolidation=zenoh.ConsolidationMode.NONE,
-        accept_replies=zenoh.ReplyKeyExpr.ANY,
-        timeout=ANSWER_S,
-    )
-    return {_digest(reply.ok) for reply in replies if reply.ok is not None}
 
 
 def _digest(sample: zenoh.Sample) -> int:

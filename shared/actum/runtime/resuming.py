@@ -5,6 +5,7 @@ import math
 import threading
 import time
 from collections import OrderedDict
+from pathlib import Path
 
 from actum.atomic_file import PRIVATE_FOLDER
 from actum.codec import DecodeError, Frame, decode
@@ -13,7 +14,7 @@ from actum.node import Counters, Remembering
 from actum.runtime.inbox import HISTORY_S, RESUMED_FRAMES_S, RESUMED_S, Reach
 from actum.runtime.journal import Journal, WrittenAnswer
 from actum.runtime.outbox import Outbox
-from actum.settings import ServiceSettings, SettingsError
+from actum.settings import RememberingSettings, ServiceSettings, SettingsError
 
 log = logging.getLogger("actum")
 
@@ -31,14 +32,18 @@ def check_state_folder(settings: ServiceSettings) -> None:
     Raises:
         SettingsError: it cannot be made.
     """
+    folder = _state_folder(settings)
     try:
-        if settings.state is not None:
-            settings.state.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
+        if folder is not None:
+            folder.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
     except OSError as error:
         raise SettingsError(
-            f"state: the folder {settings.state} cannot be created ({error.strerror}): name another folder in "
-            "ACTUM_STATE"
+            f"state: the folder {folder} cannot be created ({error.strerror}): name another folder in ACTUM_STATE"
         ) from None
+
+
+def _state_folder(settings: ServiceSettings) -> Path | None:
+    return settings.state if isinstance(settings, RememberingSettings) else None
 
 
 class HeardAnswers:
@@ -124,9 +129,10 @@ class Resumption:
     @classmethod
     def of(cls, node: object, name: str, settings: ServiceSettings, counters: Counters) -> "Resumption | None":
         """Open the journal in the folder that is set; None where there is none, or the node needs none."""
-        if settings.state is None or not isinstance(node, Remembering):
+        folder = _state_folder(settings)
+        if folder is None or not isinstance(node, Remembering):
             return None
-        journal = Journal(settings.state / f"{settings.sensor}-{name}.journal")
+        journal = Journal(folder / f"{settings.sensor}-{name}.journal")
         resumption = cls(node, journal, counters)
         if journal.unread is not None:
             resumption.report(journal.unread)

@@ -1,0 +1,138 @@
+"""Subscribers: to what is put from now on, or also to what publishers have put before and keep."""
+
+import threading
+from collections import deque
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import zenoh
+from zenoh import ext, handlers
+
+ANSWER_S = 1.0
+"""How long publishers may take to send what they keep (s)."""
+Source = tuple[str, int]
+"""A publisher: its session's id and its number in this session."""
+
+
+class Past(NamedTuple):
+    """Which earlier messages are requested: those of the last `age_s` seconds, of each publisher the newest `most`."""
+
+    age_s: float
+    most: int | None = None
+
+
+class Kept:
+    """The messages that publishers keep: requested at once, awaited when they are read.
+
+    Args:
+        session: the connection.
+        key_expr: of the messages.
+        times: when they were put, each by the clock of who put it; a time range as Zenoh writes it.
+        most: how many of each publisher, the newest ones; None for all.
+    """
+
+    def __init__(self, session: zenoh.Session, key_expr: str, times: str, most: int | None = None) -> None:
+        self._replies: list[zenoh.Reply] = []
+        self._is_complete = threading.Event()
+        # a channel that is full would block this call where the publisher is of the same session
+        session.get(
+            f"{key_expr}/@adv/**?_time={times}" + (f";_max={most}" if most else ""),
+            handlers.Callback(self._replies.append, self._is_complete.set),
+            target=zenoh.QueryTarget.ALL,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            accept_replies=zenoh.ReplyKeyExpr.ANY,
+            timeout=ANSWER_S,
+        )
+
+    def samples(self) -> list[zenoh.Sample]:
+        """Return them in the order in which they were put, without those of publishers that do not answer in time."""
+        self._is_complete.wait(2 * ANSWER_S)
+        return sorted((reply.ok for reply in self._replies if reply.ok is not None), key=_put_at)
+
+
+class RecoveringSubscriber:
+    """Returns the past in the order in which it was put, then what is put from now on; requests what gets lost.
+
+    Zenoh's subscriber can request the past, but sometimes loses all of it: it requests each publisher's past twice, and
+    passes on at once what is put between the two replies. Then it takes all earlier samples for repetitions, and drops
+    them. It also returns the past of one publisher after that of another. Therefore the past is requested here, and
+    Zenoh's subscriber only adds the past of publishers that connect later.
+    """
+
+    def __init__(self, session: zenoh.Session, key_expr: str, ring: int, past: Past | None) -> None:
+        late = past and ext.HistoryConfig(detect_late_publishers=True, max_samples=past.most, max_age=past.age_s)
+        channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
+        recovery = ext.RecoveryConfig(heartbeat=True, periodic_queries=None)
+        self._subscriber = ext.declare_advanced_subscriber(session, key_expr, channel, history=late, recovery=recovery)
+        self._live = self._subscriber.handler  # which ends quietly where the subscriber is undeclared
+        self._kept = past and Kept(session, key_expr, f"[now(-{past.age_s:.3f}s)..]", past.most)
+        self._earlier: deque[zenoh.Sample] = deque()
+        self._newest: dict[Source, int] = {}
+
+    def __iter__(self) -> Iterator[zenoh.Sample]:
+        """Yield samples until the subscriber is undeclared."""
+        self._await_kept()
+        while self._earlier:
+            yield self._earlier.popleft()
+        for sample in self._live:
+            if self._is_new(sample):
+                yield sample
+
+    def try_recv(self) -> zenoh.Sample | None:
+        """Return the next sample if there is one.
+
+        Raises:
+            zenoh.ZError: the subscriber was undeclared.
+        """
+        self._await_kept()
+        if self._earlier:
+            return self._earlier.popleft()
+        while (sample := self._live.try_recv()) is not None:
+            if self._is_new(sample):
+                return sample
+        return None
+
+    def undeclare(self) -> None:
+        """End the subscription."""
+        self._subscriber.undeclare()
+
+    def _await_kept(self) -> None:
+        """Take what was put before this subscriber, at the first call; note the newest number of each publisher."""
+        if self._kept is None:
+            return
+        self._earlier.extend(self._kept.samples())
+        self._kept = None
+        for sample in self._earlier:
+            if (info := sample.source_info) is not None:
+                source = _source(info)
+                self._newest[source] = max(info.source_sn, self._newest.get(source, 0))
+
+    def _is_new(self, sample: zenoh.Sample) -> bool:
+        """Tell whether a sample of Zenoh's subscriber is none of the past. A publisher's numbers rise."""
+        if not self._newest or (info := sample.source_info) is None:
+            return True
+        source = _source(info)
+        if info.source_sn <= self._newest.get(source, -1):
+            return False
+        self._newest.pop(source, None)
+        return True
+
+
+Subscriber = (
+    zenoh.Subscriber[zenoh.Handler[zenoh.Sample]]
+    | ext.AdvancedSubscriber[zenoh.Handler[zenoh.Sample]]
+    | RecoveringSubscriber
+)
+
+
+def subscribe(session: zenoh.Session, key_expr: str, ring: int) -> Subscriber:
+    """Declare a subscriber to what is put from now on."""
+    return session.declare_subscriber(key_expr, handlers.RingChannel(ring))
+
+
+def _source(info: zenoh.SourceInfo) -> Source:
+    return str(info.source_id.zid), info.source_id.eid
+
+
+def _put_at(sample: zenoh.Sample) -> float:
+    return 0.0 if sample.timestamp is None else sample.timestamp.get_time().timestamp()
