@@ -20,7 +20,7 @@ from actum.node import Counters
 from actum.runtime import journal as journals
 from actum.runtime.journal import Journal
 from actum.runtime.resuming import Resumption
-from actum.settings import ServiceSettings
+from actum.settings import RememberingSettings
 
 frames = st.builds(
     Frame,
@@ -294,13 +294,10 @@ def test_what_is_written_is_stored_once_a_second_and_not_beside_every_answer(
 
 
 def test_a_file_that_cannot_be_read_is_counted_and_written_again_once_that_is_possible(tmp_path: Path) -> None:
-    class Remembering(ServiceSettings):
-        state: Path | None = tmp_path
-
     counters = Counters()
     path = tmp_path / "kinect0-fusion.journal"
     path.mkdir()
-    kept = Resumption.of(Remembers(), "fusion", Remembering(), counters)
+    kept = Resumption.of(Remembers(), "fusion", RememberingSettings(state=tmp_path), counters)
     assert kept is not None and counters.rejects == {"unwritable_state": 1}
     path.rmdir()
     kept._keep(frame(1))
