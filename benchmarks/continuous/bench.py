@@ -7,10 +7,10 @@ from benchmarks.recognition.scores import table
 from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 
-from .energy import Energy
+from .energy import energy
 from .methods import Fitted, Method, found
-from .ours import Bound, ModelOf, OncePerTraining, Ours, trained
-from .rocket_windows import RocketWindows
+from .ours import ModelOf, OncePerTraining, bound, ours, trained
+from .rocket_windows import ROCKET_WINDOWS
 from .streams import ContinuousSets, Fold, Stream
 
 EVENTS, HALF, POINTS = "events F1", "F1@.5", "action points F1"
@@ -32,7 +32,7 @@ class Bench:
     @property
     def methods(self) -> tuple[Method, ...]:
         """Ours, its peers, and the bound."""
-        return Ours(self.model_of), RocketWindows(), Energy(self.model_of), Bound(self.model_of)
+        return ours(self.model_of), ROCKET_WINDOWS, energy(self.model_of), bound(self.model_of)
 
     def found(self, folds: Sequence[Fold]) -> dict[str, Found]:
         """Ask every method about the test streams of every fold, and pool what it finds, by the method's name."""

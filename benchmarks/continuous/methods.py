@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import Protocol, TypeVar
+from typing import NamedTuple, TypeVar
 
 from actum_model_trainer.continuous.detections import Detection, Found, point_fractions
 from actum_model_trainer.continuous.scoring import scores_of
@@ -11,6 +11,8 @@ from actum_model_trainer.continuous_cross_validation import with_points
 from .streams import Fold, Stream
 
 Thresholds = TypeVar("Thresholds")
+Fitted = Callable[[Stream], list[Detection]]
+"""A trained method: finds actions in a stream, causally."""
 
 SEED = 0
 INNER_FOLDS = 3
@@ -19,23 +21,11 @@ COST_OF_A_SECOND = 0.2
 """What a second of median latency costs in F1: without it, thresholds are chosen that wait for 1.5 s."""
 
 
-class Fitted(Protocol):
-    """A trained method."""
+class Method(NamedTuple):
+    """Something to train: learns from streams, and chooses thresholds on them alone."""
 
-    def detections(self, stream: Stream) -> list[Detection]:
-        """Find actions in a stream, causally."""
-        ...
-
-
-class Method(Protocol):
-    """Something to train."""
-
-    @property
-    def name(self) -> str: ...
-
-    def fit(self, training: Sequence[Stream]) -> Fitted:
-        """Learn from streams, and choose thresholds on them alone."""
-        ...
+    name: str
+    fit: Callable[[tuple[Stream, ...]], Fitted]
 
 
 def found(fitted: Fitted, fold: Fold) -> Found:
@@ -43,7 +33,7 @@ def found(fitted: Fitted, fold: Fold) -> Found:
     fractions = point_fractions(truth for stream in fold.training for truth in stream.truths)
     return sum(
         (
-            Found(with_points(fitted.detections(stream), fractions), stream.truths, stream.seen)
+            Found(with_points(fitted(stream), fractions), stream.truths, stream.seen)
             for stream in fold.test
         ),
         Found(),

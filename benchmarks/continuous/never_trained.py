@@ -25,9 +25,9 @@ from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.sample_reading import select
 
 from .bench import Bench, share
-from .methods import SEED, Method, found
-from .ours import Ours
-from .rocket_windows import RocketWindows
+from .methods import SEED, found
+from .ours import ours
+from .rocket_windows import ROCKET_WINDOWS
 from .streams import Fold, Stream, folds, stream_of
 
 LEFT_OUT = 4
@@ -88,8 +88,7 @@ def _belongs(detection: Detection, truth: Truth) -> bool:
 
 
 def _rows(bench: Bench, fold: Fold, unknown: Sequence[str], how: str) -> Iterator[list[str]]:
-    methods: tuple[Method, ...] = Ours(bench.model_of), RocketWindows()
-    for method in methods:
+    for method in (ours(bench.model_of), ROCKET_WINDOWS):
         own = found(method.fit(fold.training), fold)
         count, of = answered(own.detections, own.truths, unknown), sum(t.label in unknown for t in own.truths)
         events = scores_of(_of_known(own, unknown)).event.f1
