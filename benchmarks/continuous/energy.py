@@ -1,7 +1,7 @@
 """A peer: segments where a body moves, by two thresholds on its speed, then our classifier."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
 
@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from actum_model_trainer.answering import encoded
-from actum_model_trainer.continuous.detections import Detection, Found
+from actum_model_trainer.continuous.detections import Detection
 from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 from som_classifier.model import Model
 
-from .methods import Method, merit, without_labels
+from .methods import Method, chosen
 from .ours import ModelOf
 from .streams import Stream
 
@@ -27,6 +27,8 @@ STOPS = (0.5, 0.75, 0.9)
 QUIET_S = (0.1, 0.2, 0.35, 0.6)
 """How long the speed stays below before it has ended."""
 GRID = list(product(STARTS, STOPS, QUIET_S, SMOOTHED_S))
+ANY = "any"
+"""Every action's label where only bounds count."""
 SHORTEST = 0.5
 """Segments are at least so long, in units of the 4 % quantile of the training's durations."""
 
@@ -81,7 +83,10 @@ def chosen_hysteresis(training: Sequence[Stream]) -> Hysteresis:
         Hysteresis(start * usual_m_s, stop * start * usual_m_s, quiet_s, shortest_s, smoothed_s)
         for start, stop, quiet_s, smoothed_s in GRID
     ]  # fmt: skip
-    return max(grid, key=lambda hysteresis: _merit(hysteresis, training))
+    unnamed = [replace(own, truths=[replace(truth, label=ANY) for truth in own.truths]) for own in training]
+    return chosen(
+        grid, unnamed, lambda each, stream: [stream.detection(*span, ANY, 1.0) for span in each.segments(stream)]
+    )
 
 
 def answered(hysteresis: Hysteresis, model: Model, stream: Stream) -> list[Detection]:
@@ -110,18 +115,3 @@ def _speeds_within(stream: Stream) -> NDArray[np.float64]:
     speeds = speeds_m_s(stream, SMOOTHED_S[0])
     bounds = [stream.frames_of(truth) for truth in stream.truths]
     return np.concatenate([np.zeros(0), *(speeds[first : last + 1] for first, last in bounds)])
-
-
-def _merit(hysteresis: Hysteresis, streams: Sequence[Stream]) -> float:
-    cut = [
-        Found(
-            [
-                stream.detection(first, last, decided, "any", 1.0)
-                for first, last, decided in hysteresis.segments(stream)
-            ],
-            stream.truths,
-            stream.seen,
-        )
-        for stream in streams
-    ]
-    return merit(without_labels(sum(cut, Found())))

@@ -1,7 +1,6 @@
 """What all methods have in common, and how their thresholds are chosen."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
 from actum_model_trainer.continuous.detections import Detection, Found, point_fractions
@@ -63,12 +62,3 @@ def merit(found: Found) -> float:
     scores = scores_of(found)
     late_s = scores.latency_s[0] if scores.latency_s else 0.0
     return (scores.event.f1 + scores.f1_at_iou[0.5]) / 2 - COST_OF_A_SECOND * max(late_s, 0.0)
-
-
-def without_labels(found: Found) -> Found:
-    """Let every action be the same one, so that only the bounds are scored."""
-    return Found(
-        [replace(detection, label="any") for detection in found.detections],
-        [replace(truth, label="any") for truth in found.truths],
-        found.seen,
-    )

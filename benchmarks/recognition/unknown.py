@@ -43,8 +43,8 @@ def unknown_actions(bench: Bench) -> Iterator[str]:
     """Three actions left out of training, again and again."""
     drawn = Outcomes()
     for unknown, split in actions_left_out(odd_even(bench.data.msr)):
-        answers = bench.maps(OURS, split.training).recognitions(split.test)
-        decisions = bench.rocket(MINIROCKET, split.training).decisions(split.test)
+        answers = bench.fitted(OURS, split.training).recognitions(split.test)
+        decisions = bench.fitted(MINIROCKET, split.training).decisions(split.test)
         drawn.add(unknown, _known(split.test, unknown), answers, decisions)
     yield f"""MSR Action3D, odd people trained, even people tested; {LEFT_OUT} of the 20 actions, drawn {DRAWS} times,
 are left out of training and tested with the others. AUROC: how often a trained action scores higher than one left out
