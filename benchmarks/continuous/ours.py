@@ -24,20 +24,6 @@ def trained(training: tuple[Stream, ...]) -> Model:
     return train_to_spot(samples, [each for stream in training for each in stream.taught.streams], DEFAULT, SEED)
 
 
-class OncePerTraining:
-    """Trains a model the first time it is asked for: all methods and parts share it."""
-
-    def __init__(self, model_of: ModelOf = trained) -> None:
-        self._model_of = model_of
-        self._models: dict[tuple[Stream, ...], Model] = {}
-
-    def __call__(self, training: tuple[Stream, ...]) -> Model:
-        """Return the model of these streams."""
-        if training not in self._models:
-            self._models[training] = self._model_of(training)
-        return self._models[training]
-
-
 def ours(model_of: ModelOf) -> Method:
     """Return the default preset, which finds actions by itself."""
     return Method(OURS, lambda training: partial(replayed, model_of(training)))
