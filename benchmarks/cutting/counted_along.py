@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from actum.messages import Skeleton, Truth
 from actum.node import SECOND_NS, Counters
-from actum.skeletons import INDEX, JOINTS
+from actum.skeletons import INDEX
 from actum_examples.cutting.counting import RepetitionCounter
 from scene_simulator.driven_simulator import DrivenSimulator
 from scene_simulator.programme import ACTIONS
@@ -28,12 +28,8 @@ ASKED = 5
 START_S = 4.0
 LATE_S = 25.0
 STILL_S = 40.0
-NEAR_M = 0.06
-"""A stretch of a recording is still where no joint above the hips gets farther within half a second."""
 SAME_M = 0.08
 """Still stretches of one person are joined where their mean postures differ by less at each such joint."""
-SHORTEST_STILL_S = 1.5
-ABOVE_HIPS = [INDEX[name] for name in JOINTS if not name.endswith(("hip", "knee", "foot"))]
 GREY_NOISE = 4.0
 SWAY_PX = 3.0
 WEBCAM_HZ = 20
@@ -111,7 +107,7 @@ def still_simulated(people: str) -> Iterator[Take]:
 def still_kinect(people: str, asked: int = ASKED) -> Iterator[Take]:
     """People of MSRC-12 in their still moments, joined to and fro."""
     for stills, _ in standing(people).values():
-        yield take_of(postures.skeletons_of(joined(stills, STILL_S), SECOND_NS), (), asked)
+        yield take_of(postures.skeletons_of(postures.joined(stills, STILL_S), SECOND_NS), (), asked)
 
 
 def late_kinect(people: str) -> Iterator[Take]:
@@ -119,10 +115,12 @@ def late_kinect(people: str) -> Iterator[Take]:
     for stills, (seen, points_ns) in standing(people).values():
         frames = [frame for frame in seen if postures.is_whole(frame)]
         before, after = postures.joints_of(frames[:1])[0], postures.joints_of(frames[-1:])[0]
-        lead = postures.skeletons_of(placed(joined(stills, LATE_S), before, -1), SECOND_NS)
+        lead = postures.skeletons_of(postures.placed(postures.joined(stills, LATE_S), before, -1), SECOND_NS)
         shift_ns = lead[-1].stamp_ns + SECOND_NS // 2 - frames[0].stamp_ns
         middle = [renewed(frame, frame.stamp_ns + shift_ns) for frame in frames]
-        tail = postures.skeletons_of(placed(joined(stills, PATIENCE_S), after, 0), middle[-1].stamp_ns + SECOND_NS // 2)
+        tail = postures.skeletons_of(
+            postures.placed(postures.joined(stills, PATIENCE_S), after, 0), middle[-1].stamp_ns + SECOND_NS // 2
+        )
         spans_ns = [(point + shift_ns, point + shift_ns) for point in points_ns]
         yield take_of([*lead, *middle, *tail], spans_ns, len(points_ns))
 
@@ -132,7 +130,7 @@ def standing(people: str) -> dict[str, tuple[list[Array], Seen]]:
     found: dict[str, tuple[list[Array], list[Seen]]] = {}
     for take, points_ns in postures.gestures(people):
         stills, streams = found.setdefault(take.person, ([], []))
-        stills += still_stretches(postures.joints_of(take.frames))
+        stills += postures.still_stretches(postures.joints_of(take.frames))
         streams.append((take.frames, points_ns))
     return {
         person: (alike(stills), max(streams, key=lambda each: len(each[1]) == 2 * ASKED))
@@ -141,44 +139,12 @@ def standing(people: str) -> dict[str, tuple[list[Array], Seen]]:
     }
 
 
-def still_stretches(joints: Array, rate_hz: int = 30) -> list[Array]:
-    """Return the stretches (frames, 15, 3) in which a person hardly moves."""
-    lag, reach = rate_hz // 2, rate_hz // 10
-    if len(joints) <= 4 * lag:
-        return []
-    windows = np.lib.stride_tricks.sliding_window_view(joints, 2 * reach + 1, axis=0).mean(axis=3)
-    ways_m = np.linalg.norm(windows[lag:] - windows[:-lag], axis=2)[:, ABOVE_HIPS].max(axis=1)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], ways_m < NEAR_M, [0]])))
-    spans = [(start, end + lag) for start, end in zip(edges[::2], edges[1::2], strict=True)]
-    return [joints[start:end] for start, end in spans if end - start >= SHORTEST_STILL_S * rate_hz]
-
-
 def alike(stills: list[Array]) -> list[Array]:
     """Return the longest still stretch, and up to four others of about the same posture."""
     longest_first = sorted(stills, key=lambda still: -len(still))
-    means = [(still - still[:, INDEX["torso"]][:, None]).mean(axis=0)[ABOVE_HIPS] for still in longest_first]
+    means = [(still - still[:, INDEX["torso"]][:, None]).mean(axis=0)[postures.ABOVE_HIPS] for still in longest_first]
     near = [np.linalg.norm(mean - means[0], axis=1).max() < SAME_M for mean in means]
     return [still for still, is_near in zip(longest_first, near, strict=True) if is_near][:ASKED]
-
-
-def joined(stills: Sequence[Array], seconds: float, rate_hz: int = 30) -> Array:
-    """Join still stretches, every other round backwards, to so many seconds, with short ways between them."""
-    whole, frames = list[Array](), round(seconds * rate_hz)
-    for number in range(frames):
-        part = stills[number % len(stills)]
-        part = placed(part if number // len(stills) % 2 == 0 else part[::-1], stills[0][0], 0)
-        if whole:
-            whole.append(postures.way(whole[-1][-1], part[0], rate_hz))
-        whole.append(part)
-        if sum(map(len, whole)) >= frames:
-            break
-    return np.concatenate(whole)[:frames]
-
-
-def placed(part: Array, at: Array, index: int) -> Array:
-    """Move a part so that the torso of one of its frames is where another posture has it."""
-    moved: Array = part - part[index, INDEX["torso"]] + at[INDEX["torso"]]
-    return moved
 
 
 def renewed(frame: Skeleton, stamp_ns: int) -> Skeleton:

@@ -22,6 +22,10 @@ PAUSE_S = (0.8, 2.0)
 BRIDGE_S = 0.4
 TEMPO = (0.85, 1.15)
 JITTER_M = 0.005
+NEAR_M = 0.06
+"""A stretch of a recording is still where no joint above the hips gets farther within half a second."""
+SHORTEST_STILL_S = 1.5
+ABOVE_HIPS = [INDEX[name] for name in JOINTS if not name.endswith(("hip", "knee", "foot"))]
 HELD_OUT = {
     "msrc12": ("3", "7", "11", "15", "19", "23", "27"),
     "msr": ("2", "4", "6", "8", "10"),
@@ -114,3 +118,35 @@ def stretched(part: Array, factor: float) -> Array:
 
 def paused(part: Array, rng: np.random.Generator) -> Array:
     return np.repeat(part[:1], round(rng.uniform(*PAUSE_S) * RATE_HZ), axis=0)
+
+
+def still_stretches(joints: Array, rate_hz: int = 30) -> list[Array]:
+    """Return the stretches (frames, 15, 3) in which a person hardly moves."""
+    lag, reach = rate_hz // 2, rate_hz // 10
+    if len(joints) <= 4 * lag:
+        return []
+    windows = np.lib.stride_tricks.sliding_window_view(joints, 2 * reach + 1, axis=0).mean(axis=3)
+    ways_m = np.linalg.norm(windows[lag:] - windows[:-lag], axis=2)[:, ABOVE_HIPS].max(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], ways_m < NEAR_M, [0]])))
+    spans = [(start, end + lag) for start, end in zip(edges[::2], edges[1::2], strict=True)]
+    return [joints[start:end] for start, end in spans if end - start >= SHORTEST_STILL_S * rate_hz]
+
+
+def joined(stills: Sequence[Array], seconds: float, rate_hz: int = 30) -> Array:
+    """Join still stretches, every other round backwards, to so many seconds, with short ways between them."""
+    whole, frames = list[Array](), round(seconds * rate_hz)
+    for number in range(frames):
+        part = stills[number % len(stills)]
+        part = placed(part if number // len(stills) % 2 == 0 else part[::-1], stills[0][0], 0)
+        if whole:
+            whole.append(way(whole[-1][-1], part[0], rate_hz))
+        whole.append(part)
+        if sum(map(len, whole)) >= frames:
+            break
+    return np.concatenate(whole)[:frames]
+
+
+def placed(part: Array, at: Array, index: int) -> Array:
+    """Move a part so that the torso of one of its frames is where another posture has it."""
+    moved: Array = part - part[index, INDEX["torso"]] + at[INDEX["torso"]]
+    return moved
