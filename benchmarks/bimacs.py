@@ -33,8 +33,6 @@ ACTIONS = ("lift", "place", "hold", "approach", "retreat", "pour", "stir", "idle
 APPLIED = ("pour", "stir")
 NAMELESS = "act"
 MEASURES = {"proximity": Settings(measure="proximity"), "joint": Settings(measure="joint")}
-
-
 SEEDS = {True: 0, False: 100}
 """Of variations that were looked at while the fusion was made, and of those that were not."""
 DRAWS = range(200, 205)
@@ -172,7 +170,9 @@ def table(done: Sequence[Trial], as_found: Sequence[Trial]) -> Iterator[str]:
         if label in APPLIED:
             yield row(f"{label}: in the hand", by_label[label], found[label], Trial.held_right)
     for label, outcome in (("lift", "lifted"), ("place", "put down")):
-        yield row(f"{label}: {outcome}", by_label[label], found[label], lambda t, _, o=outcome: t.outcome_is(o))
+        yield row(
+            f"{label}: {outcome}", by_label[label], found[label], lambda t, m, o=outcome: t.events[m].outcome == o
+        )
     idle = by_label["idle"]
     seconds = {name: sum(t.seconds for t in idle if not t.object_right(name)) for name in MEASURES}
     total = sum(trial.seconds for trial in idle)
@@ -187,10 +187,10 @@ def _by_label(trials: Sequence[Trial]) -> Mapping[str, list[Trial]]:
     return by_label
 
 
-def _changed(takes: Sequence[HandsTake], change: Change, seed: int) -> list[Trial]:
+def _changed(takes: Sequence[HandsTake], seed: int, change: Change, *amounts: float) -> list[Trial]:
     """Change every take, and let the joint measure judge it."""
     rngs = [np.random.default_rng([seed, number]) for number in range(len(takes))]
-    changed = [written(take, change(read(take), rng)) for take, rng in zip(takes, rngs, strict=True)]
+    changed = [written(take, change(read(take), rng, *amounts)) for take, rng in zip(takes, rngs, strict=True)]
     return [trial for of_take in changed for trial in _trials(of_take, {"joint": MEASURES["joint"]})]
 
 
@@ -200,17 +200,16 @@ def variations_table(takes: Sequence[HandsTake]) -> Iterator[str]:
     yield f"|---|---|{'---|' * len(VARIED_LINES)}"
     for variation in VARIATIONS:
         for chosen_on, amounts in ((True, variation.chosen_on), (False, variation.looked_at)):
-            for amount, change in amounts.items():
-                done = _changed(takes, change, SEEDS[chosen_on])
-                shares = [_right_of(done, label, right) for label, right in VARIED_LINES.values()]
+            for amount, numbers in amounts.items():
+                done = _changed(takes, SEEDS[chosen_on], variation.change, *numbers)
+                by_label = _by_label(done)
+                shares = [
+                    f"{sum(right(trial, 'joint') for trial in by_label[label])}/{len(by_label[label])}"
+                    for label, right in VARIED_LINES.values()
+                ]
                 how = "" if chosen_on else "*"
                 yield f"| {variation.what} | {amount}{how} | {' | '.join(shares)} |"
     yield "\nAmounts without an asterisk were looked at while the fusion was made, those with one after."
-
-
-def _right_of(done: Sequence[Trial], label: str, right: Callable[[Trial, str], bool]) -> str:
-    of_label = [trial for trial in done if trial.label == label]
-    return f"{sum(right(trial, 'joint') for trial in of_label)}/{len(of_label)}"
 
 
 def main() -> None:
@@ -218,7 +217,7 @@ def main() -> None:
     if len(sys.argv) != 2 + varied:
         sys.exit(__doc__)
     takes = [read_take(file, "optitrack") for file in take_files(Path(folder[0]))]
-    as_found = [trial for seed in DRAWS for trial in _changed(takes, bounds_as_found, seed)]
+    as_found = [trial for seed in DRAWS for trial in _changed(takes, seed, bounds_as_found)]
     print("\n".join(table(list(trials(Path(folder[0]))), as_found)), flush=True)
     if varied:
         for line in variations_table(takes):

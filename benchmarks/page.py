@@ -1,10 +1,16 @@
 """A page of results: parts that are measured one after the other, printed as they come, and kept."""
 
 import argparse
+import platform
 import sys
+import tempfile
 import time
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
+from importlib.metadata import version
 from pathlib import Path
+from typing import TypeVar
+
+Data = TypeVar("Data")
 
 
 def part_asked_for(program: str, about: str | None, parts: Collection[str]) -> str | None:
@@ -13,6 +19,11 @@ def part_asked_for(program: str, about: str | None, parts: Collection[str]) -> s
     parser.add_argument("--only", choices=parts, help="measure this part and leave the page as it is")
     only: str | None = parser.parse_args().only
     return only
+
+
+def versions_of(*libraries: str) -> str:
+    """Return the versions of Python and of some libraries."""
+    return ", ".join([f"Python {platform.python_version()}", *(f"{name} {version(name)}" for name in libraries)])
 
 
 def printed(header: Iterable[str], parts: Iterable[str], measure: Callable[[str], str]) -> str:
@@ -34,3 +45,22 @@ def measure_page(
         printed(header, [only], measure)
     else:
         page.write_text(printed(header, parts, measure))
+
+
+def measure_sections(
+    page: Path,
+    about: str | None,
+    header: Iterable[str],
+    sections: Mapping[str, tuple[str, Callable[[Data], Iterable[str]]]],
+    data_in: Callable[[Path], Data],
+) -> None:
+    """Measure what the command line asks for: titled sections, with data that are made in a folder for a while."""
+    only = part_asked_for(f"benchmarks.{page.parent.name}", about, sections)
+    with tempfile.TemporaryDirectory() as folder:
+        data = data_in(Path(folder))
+
+        def section(part: str) -> str:
+            title, measure = sections[part]
+            return "\n\n".join([f"## {title}", *measure(data)])
+
+        measure_page(page, only, header, sections, section)

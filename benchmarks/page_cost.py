@@ -38,8 +38,6 @@ SCENE: Given = {"everyday": ["all"], "pauses": ["short"]}
 """Actions are marked, and everyday doings come between."""
 READERS = 3
 SETTLE_S, MEASURE_S = 5.0, 30.0
-STALLED_S = 600.0
-"""For how long a reader that stops reading does so: longer than it is measured."""
 PIPELINE = ("pose_preprocessor", "som_classifier", "action_fusion", "marker_tracker")
 
 

@@ -11,8 +11,9 @@ os.environ["OPENBLAS_NUM_THREADS"] = os.environ["NUMBA_NUM_THREADS"] = os.enviro
 
 import platform
 import time
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
 from importlib.metadata import version
 from statistics import median
 from typing import Any
@@ -35,15 +36,20 @@ ROUNDS = 3
 LOOKUPS = 500
 DIMENSIONS = (9, 45)
 CLUSTERS = 40
+DTYPES: Mapping[str, type] = {"actum, float64": np.float64, "actum, float32": np.float32}
 
 
 @dataclass
 class Row:
-    """One line of the table: what was measured, in µs per unit of work, and how good the map became."""
+    """One line of the table: what was measured, in µs per unit of work, and how good the map became.
+
+    `run` does the work once; it returns the time per unit (µs), and the map where one was trained.
+    """
 
     work: str
     by: str
-    times_us: list[float]
+    run: Callable[[], tuple[float, Som | None]]
+    times_us: list[float] = field(default_factory=list)
     som: Som | None = None
 
     @property
@@ -84,99 +90,68 @@ def timed(work: Callable[[], Any]) -> float:
     return (time.perf_counter() - began_s) * 1e6
 
 
-def sequential_row(
-    name: str, start: Array, vectors: Array, dtype: type, kernel: Kernel
-) -> tuple[Row, Callable[[], None]]:
+def sequential(untrained: Som, vectors: Array, kernel: Kernel) -> tuple[float, Som]:
     """Time all steps, on the vectors in their order, as MiniSom takes them."""
     decay = Steps(asymptotic(ALPHA, STEPS), asymptotic(RADIUS, STEPS))
-    untrained = Som(SIDE, SIDE, start.astype(dtype))
-    row = Row(f"sequential training, {STEPS:,} steps", name, [])
-
-    def once() -> None:
-        training = SequentialTraining(untrained, vectors, np.arange(STEPS) % VECTORS, decay, kernel)
-        row.times_us.append(timed(lambda: training.run(STEPS)) / STEPS)
-        row.som = training.som
-
-    return row, once
+    training = SequentialTraining(untrained, vectors, np.arange(STEPS) % VECTORS, decay, kernel)
+    return timed(lambda: training.run(STEPS)) / STEPS, training.som
 
 
-def minisom_sequential(start: Array, vectors: Array) -> tuple[Row, Callable[[], None]]:
-    row = Row(f"sequential training, {STEPS:,} steps", "MiniSom", [])
-
-    def once() -> None:
-        som = minisom(start)
-        row.times_us.append(timed(lambda: som.train(vectors, STEPS)) / STEPS)
-        row.som = as_som(som)
-
-    return row, once
+def minisom_sequential(start: Array, vectors: Array) -> tuple[float, Som]:
+    som = minisom(start)
+    return timed(lambda: som.train(vectors, STEPS)) / STEPS, as_som(som)
 
 
-def minisom_batch(start: Array, vectors: Array) -> tuple[Row, Callable[[], None]]:
+def minisom_batch(start: Array, vectors: Array) -> tuple[float, Som]:
     """MiniSom blends the new means with the old weights by its learning rate; at 1 it is the batch map."""
-    row = Row(f"batch training, {EPOCHS} epochs of {VECTORS:,}", "MiniSom train_batch_offline", [])
-
-    def once() -> None:
-        som = minisom(start, decay_function=lambda rate, _step, _steps: 1.0)
-        row.times_us.append(timed(lambda: som.train_batch_offline(vectors, EPOCHS)) / EPOCHS)
-        row.som = as_som(som)
-
-    return row, once
+    som = minisom(start, decay_function=lambda rate, _step, _steps: 1.0)
+    return timed(lambda: som.train_batch_offline(vectors, EPOCHS)) / EPOCHS, as_som(som)
 
 
-def batch(name: str, start: Array, vectors: Array, dtype: type) -> tuple[Row, Callable[[], None]]:
-    row = Row(f"batch training, {EPOCHS} epochs of {VECTORS:,}", name, [])
-    inputs = vectors.astype(dtype)
+def batch(untrained: Som, vectors: Array) -> tuple[float, Som]:
+    training = BatchTraining(untrained, vectors, asymptotic(RADIUS, EPOCHS))
 
-    def epochs(training: BatchTraining[Som]) -> None:
+    def epochs() -> None:
         for _ in range(EPOCHS):
             training.run_epoch()
 
-    def once() -> None:
-        training = BatchTraining(Som(SIDE, SIDE, start.astype(dtype)), inputs, asymptotic(RADIUS, EPOCHS))
-        row.times_us.append(timed(lambda: epochs(training)) / EPOCHS)
-        row.som = training.som
-
-    return row, once
+    return timed(epochs) / EPOCHS, training.som
 
 
-def lookup(name: str, work: str, look: Callable[[Array], Any], vectors: Array) -> tuple[Row, Callable[[], None]]:
+def lookup(look: Callable[[Array], Any], frames: list[Array]) -> tuple[float, None]:
     """Time one call per frame."""
-    row = Row(work, name, [])
-    frames = list(vectors[:LOOKUPS])
-
-    def once() -> None:
-        row.times_us.append(timed(lambda: [look(frame) for frame in frames]) / LOOKUPS)
-
-    return row, once
+    return timed(lambda: [look(frame) for frame in frames]) / len(frames), None
 
 
-def lookups(start: Array, vectors: Array) -> Iterator[tuple[Row, Callable[[], None]]]:
+def batched(som: Som, vectors: Array) -> tuple[float, None]:
+    return timed(lambda: som.bmus(vectors)) / len(vectors), None
+
+
+def lookups(start: Array, vectors: Array) -> Iterator[Row]:
     """Single frames one call each, and all vectors in one call where there is such a call."""
-    theirs = minisom(start)
-    yield lookup("MiniSom.winner", "best matching unit of one frame", theirs.winner, vectors)
-    for dtype in (np.float64, np.float32):
-        ours = Som(SIDE, SIDE, start.astype(dtype))
-        name = f"actum, {np.dtype(dtype).name}"
-        yield lookup(name, "best matching unit of one frame", ours.bmu, vectors.astype(dtype))
-    yield lookup("MiniSom.winner, a loop", "best matching units of many frames", theirs.winner, vectors)
-    for dtype in (np.float64, np.float32):
-        yield batched(f"actum, {np.dtype(dtype).name}", Som(SIDE, SIDE, start.astype(dtype)), vectors.astype(dtype))
+    one, many, winner = "best matching unit of one frame", "best matching units of many frames", minisom(start).winner
+    theirs = partial(lookup, winner, list(vectors[:LOOKUPS]))
+    yield Row(one, "MiniSom.winner", theirs)
+    for name, dtype in DTYPES.items():
+        frames = list(vectors[:LOOKUPS].astype(dtype))
+        yield Row(one, name, partial(lookup, Som(SIDE, SIDE, start.astype(dtype)).bmu, frames))
+    yield Row(many, "MiniSom.winner, a loop", theirs)
+    for name, dtype in DTYPES.items():
+        yield Row(many, name, partial(batched, Som(SIDE, SIDE, start.astype(dtype)), vectors.astype(dtype)))
 
 
-def batched(name: str, som: Som, vectors: Array) -> tuple[Row, Callable[[], None]]:
-    row = Row("best matching units of many frames", name, [])
-    return row, lambda: row.times_us.append(timed(lambda: som.bmus(vectors)) / len(vectors))
-
-
-def trainings(start: Array, vectors: Array) -> Iterator[tuple[Row, Callable[[], None]]]:
+def trainings(start: Array, vectors: Array) -> Iterator[Row]:
     """Everything that makes a map."""
-    yield minisom_sequential(start, vectors)
-    yield sequential_row("actum, float64, NumPy only", start, vectors, np.float64, adapt_in_numpy)
-    for dtype in (np.float64, np.float32):
-        yield sequential_row(f"actum, {np.dtype(dtype).name}", start, vectors, dtype, fastest_kernel())
-    yield minisom_batch(start, vectors)
-    for dtype in (np.float64, np.float32):
-        yield batch(f"actum, {np.dtype(dtype).name}", start, vectors, dtype)
+    steps, epochs = f"sequential training, {STEPS:,} steps", f"batch training, {EPOCHS} epochs of {VECTORS:,}"
+    untrained = {name: Som(SIDE, SIDE, start.astype(dtype)) for name, dtype in DTYPES.items()}
+    yield Row(steps, "MiniSom", partial(minisom_sequential, start, vectors))
+    in_numpy = partial(sequential, untrained["actum, float64"], vectors, adapt_in_numpy)
+    yield Row(steps, "actum, float64, NumPy only", in_numpy)
+    for name, som in untrained.items():
+        yield Row(steps, name, partial(sequential, som, vectors, fastest_kernel()))
+    yield Row(epochs, "MiniSom train_batch_offline", partial(minisom_batch, start, vectors))
+    for name, som in untrained.items():
+        yield Row(epochs, name, partial(batch, som, vectors.astype(DTYPES[name])))
 
 
 def measured(dim: int) -> list[Row]:
@@ -184,15 +159,16 @@ def measured(dim: int) -> list[Row]:
     vectors = synthetic(dim)
     start = vectors[np.random.default_rng(1).choice(VECTORS, SIDE * SIDE, replace=False)]
     warm_up(start)
-    tasks = [*trainings(start, vectors), *lookups(start, vectors)]
+    rows = [*trainings(start, vectors), *lookups(start, vectors)]
     for _ in range(ROUNDS):
-        for _row, once in tasks:
-            once()
-    return [row for row, _once in tasks]
+        for row in rows:
+            time_us, row.som = row.run()
+            row.times_us.append(time_us)
+    return rows
 
 
 def warm_up(start: Array) -> None:
-    for dtype in (np.float64, np.float32):
+    for dtype in DTYPES.values():
         Som(SIDE, SIDE, start.astype(dtype)).train(
             start, 10, Schedule((0.1, 0.1), (1.0, 1.0)), np.random.default_rng(0)
         )

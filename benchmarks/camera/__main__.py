@@ -3,15 +3,14 @@
 ACTUM_DATA=… ACTUM_POSE_MODEL=… python -m benchmarks.camera
 """
 
-import platform
 import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from importlib.metadata import version
 from pathlib import Path
 
 from ..originals import ImportedSets
+from ..page import versions_of
 from ..recognition.datasets import Example, examples_of
 from ..recognition.ours import OURS, PAPERS
 from ..recognition.peers import DTW, MINIROCKET, MINIROCKET_UPRIGHT, MULTIROCKET, Recogniser
@@ -20,7 +19,6 @@ from ..recognition.splits import SEED, Split, leave_one_person_out
 from ..recognition.videos import import_florence
 
 PAGE = Path(__file__).with_name("results.md")
-LIBRARIES = ("mediapipe", "numpy", "aeon", "scikit-learn")
 RECOGNISERS: tuple[Recogniser, ...] = (OURS, PAPERS, MINIROCKET, MINIROCKET_UPRIGHT, MULTIROCKET, DTW)
 
 
@@ -39,11 +37,11 @@ def _show(done: int, total: int) -> None:
 
 
 def _header(examples: Sequence[Example], imported_s: float) -> Iterator[str]:
-    versions = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
     people = sorted({example.person for example in examples})
     frames = sum(len(example.sample.stamps_ns) for example in examples)
+    versions = versions_of("mediapipe", "numpy", "aeon", "scikit-learn")
     yield "# Recognition from an ordinary camera"
-    yield f"""`make bench-camera`: Python {platform.python_version()}, {versions}. RGB clips of Florence 3D Actions:
+    yield f"""`make bench-camera`: {versions}. RGB clips of Florence 3D Actions:
 {len(examples)} clips, {frames} frames, {len({e.label for e in examples})} actions, people {_listed(people)}. Each clip
 is seen by the camera source: MediaPipe's pose landmarker, placed in metres by an assumed field of view, no stature
 given; {frames / imported_s:.0f} frames/s with decoding. The whole clip is one segment. Every model has seed {SEED}."""

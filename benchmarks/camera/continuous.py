@@ -4,7 +4,6 @@ ACTUM_DATA=… ACTUM_POSE_MODEL=… python -m benchmarks.camera.continuous
 """
 
 import os
-import platform
 import tempfile
 import threading
 import time
@@ -13,7 +12,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -38,6 +36,7 @@ from sensor_gateway.settings import Settings
 from som_classifier.presets import DEFAULT
 
 from ..originals import original
+from ..page import versions_of
 from ..recognition.scores import table
 from .joined_clips import BACKGROUND, FRAMES_PER_SECOND, STILL_FRAMES, Joined, joined, stamp_ns
 
@@ -181,10 +180,10 @@ def _wait_for_end(ear: Ear) -> None:
 
 def header(videos: Mapping[str, Joined]) -> Iterator[str]:
     """Say what was run, and how."""
-    versions = ", ".join(f"{name} {version(name)}" for name in ("mediapipe", "numpy"))
     actions = sum(len(each.actions) for each in videos.values())
+    versions = versions_of("mediapipe", "numpy")
     yield "# Found live, from an ordinary camera"
-    yield f"""`make bench-camera-continuous`: Python {platform.python_version()}, {versions}, {os.cpu_count()} cores.
+    yield f"""`make bench-camera-continuous`: {versions}, {os.cpu_count()} cores.
 All RGB clips of one person of Florence 3D Actions are joined to one video in mixed order, {FRAMES_PER_SECOND} pictures
 a second; between two clips the last picture of the one and the first of the other stand for
 {STILL_FRAMES / FRAMES_PER_SECOND:.1f} s each, with a cut between. {" and ".join(BACKGROUND).capitalize()} are labelled

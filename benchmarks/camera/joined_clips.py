@@ -1,6 +1,5 @@
 """Clips of one person joined to one video: the actions, and what the person does between them."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
@@ -77,13 +76,9 @@ def joined(clips: Path, person: str, path: Path) -> Joined:
         label, file = own[number]
         pictures = [picture.image_bgr for picture in pictures_of(file)]
         first = written + STILL_FRAMES
-        for picture in _with_stills(pictures):
+        for picture in chain([pictures[0]] * STILL_FRAMES, pictures, [pictures[-1]] * STILL_FRAMES):
             writer.write(picture)
         parts.append(Part(label, first, first + len(pictures) - 1))
         written += len(pictures) + 2 * STILL_FRAMES
     writer.release()
     return Joined(path, person, tuple(parts))
-
-
-def _with_stills(pictures: Sequence[Picture]) -> Iterator[Picture]:
-    return chain([pictures[0]] * STILL_FRAMES, pictures, [pictures[-1]] * STILL_FRAMES)

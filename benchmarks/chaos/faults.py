@@ -1,7 +1,6 @@
 """The faults of a run, drawn by a seed: who is struck, how, and when."""
 
 import random
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from typing import Literal
@@ -63,12 +62,8 @@ def drawn(seed: int, count: int, span_s: float, only: str = "") -> list[Fault]:
         struck += rng.sample(wanted, len(wanted))
     free_s = max(span_s - count * APART_S, count * APART_S / 4)
     moments_s = sorted(rng.uniform(0.0, free_s) for _ in range(count))
-    chosen = _shuffled(rng, struck[:count])
+    chosen = rng.sample(struck[:count], count)
     return [
         Fault(victim, kind, free_s + number * APART_S)
         for number, ((victim, kind), free_s) in enumerate(zip(chosen, moments_s, strict=True))
     ]
-
-
-def _shuffled(rng: random.Random, struck: Sequence[tuple[str, Kind]]) -> list[tuple[str, Kind]]:
-    return rng.sample(struck, len(struck))

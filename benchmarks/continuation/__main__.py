@@ -3,14 +3,10 @@
 ACTUM_DATA=… python -m benchmarks.continuation [--only PART]
 """
 
-import platform
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.page import measure_page, part_asked_for
+from benchmarks.page import measure_sections, versions_of
 
 from .tables import Bench, cost, measured, smoothed
 
@@ -24,8 +20,9 @@ PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
 
 def header() -> Iterator[str]:
     """Say what was run, and how it was chosen."""
+    versions = versions_of("numpy")
     yield "# How postures go on"
-    yield f"""`make bench-continuation`: Python {platform.python_version()}, numpy {version("numpy")}, one core. From
+    yield f"""`make bench-continuation`: {versions}, one core. From
 every fifth of a second of a recording the posture is predicted 0.25, 0.5 and 1 s ahead: by the continuation of a model
 that `actum train --continue` makes, and by three assumptions: the posture stays as it was measured; it stays as the
 classifier smooths it; it goes on from there at the velocity that the classifier estimates."""
@@ -38,16 +35,8 @@ is a second input. Penalty and weight of activity were first looked at there, to
 are not unseen."""
 
 
-def section(bench: Bench, part: str) -> str:
-    """Measure one part."""
-    title, measure = PARTS[part]
-    return "\n\n".join([f"## {title}", *measure(bench)])
-
-
 def main() -> None:
-    only = part_asked_for("benchmarks.continuation", __doc__, PARTS)
-    with tempfile.TemporaryDirectory() as folder:
-        measure_page(PAGE, only, header(), PARTS, partial(section, Bench(Path(folder))))
+    measure_sections(PAGE, __doc__, header(), PARTS, Bench)
 
 
 if __name__ == "__main__":

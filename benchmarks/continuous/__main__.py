@@ -3,14 +3,10 @@
 ACTUM_DATA=… python -m benchmarks.continuous [--only PART]
 """
 
-import platform
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.page import measure_page, part_asked_for
+from benchmarks.page import measure_sections, versions_of
 
 from .bench import EVENTS, FALSE, HALF, LATENCY, POINTS, Bench, Goals, scores_table
 from .cost import cost
@@ -25,7 +21,6 @@ from .strangers import strangers
 from .streams import FOLDS, ContinuousSets, folds
 
 PAGE = Path(__file__).with_name("results.md")
-LIBRARIES = ("numpy", "aeon", "scikit-learn")
 UTKINECT_GOALS: Goals = {
     "required": {EVENTS: "≥ 0.80", HALF: "≥ 0.70", FALSE: "≤ 2.00", LATENCY: "≤ 0.50"},
     "aimed at": {EVENTS: "≥ 0.90", HALF: "≥ 0.82", FALSE: "≤ 1.00", LATENCY: "≤ 0.30"},
@@ -75,9 +70,9 @@ PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
 
 def header() -> Iterator[str]:
     """Say what was run, and by which protocol."""
-    versions = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    versions = versions_of("numpy", "aeon", "scikit-learn")
     yield "# Actions found without marks"
-    yield f"""`make bench-continuous`: Python {platform.python_version()}, {versions}, one core. Whole recordings are
+    yield f"""`make bench-continuous`: {versions}, one core. Whole recordings are
 given without their marks. People are sorted, and fold f of {FOLDS} tests people f, f + {FOLDS}, … on what all others
 taught; thresholds of the peers are chosen on training people alone, MiniRocket's on those left out in {INNER_FOLDS}
 inner folds, by the mean of event F1 and F1 at IoU .5 less {COST_OF_A_SECOND} for each second of median latency. Ours
@@ -90,17 +85,8 @@ rows say what ours is required to show and what is aimed at; besides, it is to b
 three points of the bound."""
 
 
-def section(bench: Bench, part: str) -> str:
-    """Measure one part."""
-    title, measure = PARTS[part]
-    return "\n\n".join([f"## {title}", *measure(bench)])
-
-
 def main() -> None:
-    only = part_asked_for("benchmarks.continuous", __doc__, PARTS)
-    with tempfile.TemporaryDirectory() as folder:
-        bench = Bench(ContinuousSets(Path(folder)))
-        measure_page(PAGE, only, header(), PARTS, partial(section, bench))
+    measure_sections(PAGE, __doc__, header(), PARTS, lambda folder: Bench(ContinuousSets(folder)))
 
 
 if __name__ == "__main__":

@@ -1,17 +1,18 @@
 """What all parts share: the sets, every method, and what has been trained on each fold."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 
 from benchmarks.recognition.scores import table
 
 from actum_model_trainer.continuous.detections import Found
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 
-from .energy import Energy
-from .methods import Fitted, Method, found
-from .ours import Bound, ModelOf, OncePerTraining, Ours, trained
-from .rocket_windows import RocketWindows
-from .streams import ContinuousSets, Fold, Stream
+from .energy import energy
+from .methods import found
+from .ours import ModelOf, bound, ours, trained
+from .rocket_windows import ROCKET_WINDOWS
+from .streams import ContinuousSets, Fold
 
 EVENTS, HALF, POINTS = "events F1", "F1@.5", "action points F1"
 FALSE, LATENCY = "false / min (in background)", "latency, s: median (90 %)"
@@ -26,27 +27,17 @@ class Bench:
 
     def __init__(self, data: ContinuousSets, model_of: ModelOf = trained) -> None:
         self.data = data
-        self.model_of = OncePerTraining(model_of)
-        self._fitted: dict[tuple[str, tuple[Stream, ...]], Fitted] = {}
-
-    @property
-    def methods(self) -> tuple[Method, ...]:
-        """Ours, its peers, and the bound."""
-        return Ours(self.model_of), RocketWindows(), Energy(self.model_of), Bound(self.model_of)
+        self.model_of: ModelOf = cache(model_of)
+        self._methods = ours(self.model_of), ROCKET_WINDOWS, energy(self.model_of), bound(self.model_of)
+        self._fitted = cache(lambda method, training: method.fit(training))
 
     def found(self, folds: Sequence[Fold]) -> dict[str, Found]:
-        """Ask every method about the test streams of every fold, and pool what it finds, by the method's name."""
-        pooled = {method.name: Found() for method in self.methods}
+        """Ask ours, its peers and the bound about the test streams of every fold; pool what each finds, by its name."""
+        pooled = {method.name: Found() for method in self._methods}
         for fold in folds:
-            for method in self.methods:
-                pooled[method.name] += found(self._fit(method, fold), fold)
+            for method in self._methods:
+                pooled[method.name] += found(self._fitted(method, fold.training), fold)
         return pooled
-
-    def _fit(self, method: Method, fold: Fold) -> Fitted:
-        key = method.name, fold.training
-        if key not in self._fitted:
-            self._fitted[key] = method.fit(fold.training)
-        return self._fitted[key]
 
 
 def scores_table(pooled: dict[str, Found], goals: Goals = NO_GOALS) -> str:

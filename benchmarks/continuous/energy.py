@@ -1,7 +1,8 @@
 """A peer: segments where a body moves, by two thresholds on its speed, then our classifier."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -9,11 +10,12 @@ from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from actum_model_trainer.answering import encoded
-from actum_model_trainer.continuous.detections import Detection, Found
+from actum_model_trainer.continuous.detections import Detection
 from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 from som_classifier.model import Model
 
-from .methods import merit, without_labels
+from .methods import Method, chosen
+from .ours import ModelOf
 from .streams import Stream
 
 SMOOTHED_S = (0.17, 0.5)
@@ -25,6 +27,8 @@ STOPS = (0.5, 0.75, 0.9)
 QUIET_S = (0.1, 0.2, 0.35, 0.6)
 """How long the speed stays below before it has ended."""
 GRID = list(product(STARTS, STOPS, QUIET_S, SMOOTHED_S))
+ANY = "any"
+"""Every action's label where only bounds count."""
 SHORTEST = 0.5
 """Segments are at least so long, in units of the 4 % quantile of the training's durations."""
 
@@ -62,42 +66,39 @@ class Hysteresis:
         return [each for each in segments if stamps_ns[each[1]] - stamps_ns[each[0]] >= self.shortest_s * SECOND_NS]
 
 
-@dataclass(frozen=True, eq=False)
-class FittedEnergy:
-    """Thresholds and our classifier."""
-
-    hysteresis: Hysteresis
-    model: Model
-
-    def detections(self, stream: Stream) -> list[Detection]:
-        """Answer each segment; what the classifier calls unknown is none."""
-        frames = encoded(self.model, stream.whole)
-        detections = []
-        for first, last, decided in self.hysteresis.segments(stream):
-            if last - first + 1 >= self.model.min_frames:
-                answer = self.model.recognise(frames[first : last + 1], complete=True)
-                if not answer.unknown:
-                    detections.append(stream.detection(first, last, decided, answer.label, answer.confidence))
-        return detections
+def energy(model_of: ModelOf) -> Method:
+    """Return two thresholds on speed, chosen by the segments' bounds alone, without labels; then our classifier."""
+    return Method(
+        "energy, then our classifier",
+        lambda training: partial(answered, chosen_hysteresis(training), model_of(training)),
+    )
 
 
-@dataclass(frozen=True)
-class Energy:
-    """Two thresholds on speed; they are chosen by the segments' bounds alone, without labels."""
+def chosen_hysteresis(training: Sequence[Stream]) -> Hysteresis:
+    """Choose the thresholds by the bounds in streams."""
+    usual_m_s = np.median(np.concatenate([_speeds_within(stream) for stream in training]))
+    lengths_s = [(truth.end_ns - truth.start_ns) / SECOND_NS for stream in training for truth in stream.truths]
+    shortest_s = SHORTEST * float(np.quantile(lengths_s, 0.04))
+    grid = [
+        Hysteresis(start * usual_m_s, stop * start * usual_m_s, quiet_s, shortest_s, smoothed_s)
+        for start, stop, quiet_s, smoothed_s in GRID
+    ]  # fmt: skip
+    unnamed = [replace(own, truths=[replace(truth, label=ANY) for truth in own.truths]) for own in training]
+    return chosen(
+        grid, unnamed, lambda each, stream: [stream.detection(*span, ANY, 1.0) for span in each.segments(stream)]
+    )
 
-    model_of: Callable[[tuple[Stream, ...]], Model]
-    name: str = "energy, then our classifier"
 
-    def fit(self, training: Sequence[Stream]) -> FittedEnergy:
-        usual_m_s = np.median(np.concatenate([_speeds_within(stream) for stream in training]))
-        lengths_s = [(truth.end_ns - truth.start_ns) / SECOND_NS for stream in training for truth in stream.truths]
-        shortest_s = SHORTEST * float(np.quantile(lengths_s, 0.04))
-        grid = [
-            Hysteresis(start * usual_m_s, stop * start * usual_m_s, quiet_s, shortest_s, smoothed_s)
-            for start, stop, quiet_s, smoothed_s in GRID
-        ]  # fmt: skip
-        best = max(grid, key=lambda hysteresis: _merit(hysteresis, training))
-        return FittedEnergy(best, self.model_of(tuple(training)))
+def answered(hysteresis: Hysteresis, model: Model, stream: Stream) -> list[Detection]:
+    """Answer each segment; what the classifier calls unknown is none."""
+    frames = encoded(model, stream.whole)
+    detections = []
+    for first, last, decided in hysteresis.segments(stream):
+        if last - first + 1 >= model.min_frames:
+            answer = model.recognise(frames[first : last + 1], complete=True)
+            if not answer.unknown:
+                detections.append(stream.detection(first, last, decided, answer.label, answer.confidence))
+    return detections
 
 
 def speeds_m_s(stream: Stream, smoothed_s: float) -> NDArray[np.float64]:
@@ -114,18 +115,3 @@ def _speeds_within(stream: Stream) -> NDArray[np.float64]:
     speeds = speeds_m_s(stream, SMOOTHED_S[0])
     bounds = [stream.frames_of(truth) for truth in stream.truths]
     return np.concatenate([np.zeros(0), *(speeds[first : last + 1] for first, last in bounds)])
-
-
-def _merit(hysteresis: Hysteresis, streams: Sequence[Stream]) -> float:
-    cut = [
-        Found(
-            [
-                stream.detection(first, last, decided, "any", 1.0)
-                for first, last, decided in hysteresis.segments(stream)
-            ],
-            stream.truths,
-            stream.seen,
-        )
-        for stream in streams
-    ]
-    return merit(without_labels(sum(cut, Found())))

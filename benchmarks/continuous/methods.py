@@ -1,8 +1,7 @@
 """What all methods have in common, and how their thresholds are chosen."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
-from typing import Protocol, TypeVar
+from typing import NamedTuple, TypeVar
 
 from actum_model_trainer.continuous.detections import Detection, Found, point_fractions
 from actum_model_trainer.continuous.scoring import scores_of
@@ -11,6 +10,8 @@ from actum_model_trainer.continuous_cross_validation import with_points
 from .streams import Fold, Stream
 
 Thresholds = TypeVar("Thresholds")
+Fitted = Callable[[Stream], list[Detection]]
+"""A trained method: finds actions in a stream, causally."""
 
 SEED = 0
 INNER_FOLDS = 3
@@ -19,23 +20,11 @@ COST_OF_A_SECOND = 0.2
 """What a second of median latency costs in F1: without it, thresholds are chosen that wait for 1.5 s."""
 
 
-class Fitted(Protocol):
-    """A trained method."""
+class Method(NamedTuple):
+    """Something to train: learns from streams, and chooses thresholds on them alone."""
 
-    def detections(self, stream: Stream) -> list[Detection]:
-        """Find actions in a stream, causally."""
-        ...
-
-
-class Method(Protocol):
-    """Something to train."""
-
-    @property
-    def name(self) -> str: ...
-
-    def fit(self, training: Sequence[Stream]) -> Fitted:
-        """Learn from streams, and choose thresholds on them alone."""
-        ...
+    name: str
+    fit: Callable[[tuple[Stream, ...]], Fitted]
 
 
 def found(fitted: Fitted, fold: Fold) -> Found:
@@ -43,7 +32,7 @@ def found(fitted: Fitted, fold: Fold) -> Found:
     fractions = point_fractions(truth for stream in fold.training for truth in stream.truths)
     return sum(
         (
-            Found(with_points(fitted.detections(stream), fractions), stream.truths, stream.seen)
+            Found(with_points(fitted(stream), fractions), stream.truths, stream.seen)
             for stream in fold.test
         ),
         Found(),
@@ -73,12 +62,3 @@ def merit(found: Found) -> float:
     scores = scores_of(found)
     late_s = scores.latency_s[0] if scores.latency_s else 0.0
     return (scores.event.f1 + scores.f1_at_iou[0.5]) / 2 - COST_OF_A_SECOND * max(late_s, 0.0)
-
-
-def without_labels(found: Found) -> Found:
-    """Let every action be the same one, so that only the bounds are scored."""
-    return Found(
-        [replace(detection, label="any") for detection in found.detections],
-        [replace(truth, label="any") for truth in found.truths],
-        found.seen,
-    )

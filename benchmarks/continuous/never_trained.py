@@ -19,15 +19,15 @@ from actum.recording import Recording
 from actum_dataset_importer.importing import SENSOR, import_takes
 from actum_dataset_importer.msrc12 import GESTURES, NAME, stream_names_by_file
 from actum_dataset_importer.msrc12_composed import composed
-from actum_model_trainer.continuous.detections import Detection, Found, Truth
+from actum_model_trainer.continuous.detections import Detection, Truth
 from actum_model_trainer.continuous.matching import intersection_over_union, matched, overlap_ns
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.sample_reading import select
 
 from .bench import Bench, share
-from .methods import SEED, Method, found
-from .ours import Ours
-from .rocket_windows import RocketWindows
+from .methods import SEED, found
+from .ours import ours
+from .rocket_windows import ROCKET_WINDOWS
 from .streams import Fold, Stream, folds, stream_of
 
 LEFT_OUT = 4
@@ -88,16 +88,12 @@ def _belongs(detection: Detection, truth: Truth) -> bool:
 
 
 def _rows(bench: Bench, fold: Fold, unknown: Sequence[str], how: str) -> Iterator[list[str]]:
-    methods: tuple[Method, ...] = Ours(bench.model_of), RocketWindows()
-    for method in methods:
+    for method in (ours(bench.model_of), ROCKET_WINDOWS):
         own = found(method.fit(fold.training), fold)
         count, of = answered(own.detections, own.truths, unknown), sum(t.label in unknown for t in own.truths)
-        events = scores_of(_of_known(own, unknown)).event.f1
+        known = replace(own, truths=[truth for truth in own.truths if truth.label not in unknown])
+        events = scores_of(known).event.f1
         yield [", ".join(unknown), how, method.name, f"{count} of {of}", share(count / of), share(events)]
-
-
-def _of_known(own: Found, unknown: Sequence[str]) -> Found:
-    return replace(own, truths=[truth for truth in own.truths if truth.label not in unknown])
 
 
 def _without_marks(recording: Recording, unknown: Sequence[str], folder: Path) -> Recording:

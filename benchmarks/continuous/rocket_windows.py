@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from aeon.transformations.collection.convolution_based import MiniRocket
@@ -19,7 +19,7 @@ from sklearn.preprocessing import StandardScaler
 from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection
 
-from .methods import SEED, chosen, inner_folds
+from .methods import SEED, Fitted, Method, chosen, inner_folds
 from .streams import Stream
 from .windows import NONE, Indices, Window, durations_s, sliding, training_windows
 
@@ -54,52 +54,44 @@ class Scored:
     margins: Floats
 
 
-@dataclass(frozen=True, eq=False)
-class FittedWindows:
-    """Kernels, a ridge, and the thresholds that were chosen."""
+class Windows(NamedTuple):
+    """Kernels, a ridge, and how long windows are."""
 
     kernels: Any
     scaler: StandardScaler
     ridge: Any
     lengths_s: NDArray[np.float64]
-    thresholds: tuple[float, float]
-
-    def detections(self, stream: Stream) -> list[Detection]:
-        return decoded(stream, scored(self, stream), list(self.ridge.classes_), self.thresholds)
 
 
-@dataclass(frozen=True)
-class RocketWindows:
-    """MiniRocket on windows."""
+def fitted(training: Sequence[Stream]) -> Fitted:
+    """Learn from windows, and choose thresholds on people left out."""
+    windows = training_windows(training, np.random.default_rng(SEED))
+    labels = np.array([window.label for window in windows])
+    kernels = MiniRocket(random_state=SEED)
+    features = np.asarray(kernels.fit_transform(inputs_of(windows)))
+    scaler = StandardScaler(with_mean=False, copy=False)
+    features = scaler.fit_transform(features)
+    ridge = RidgeClassifierCV(alphas=np.logspace(-3, 3, 10)).fit(features, labels)
+    own = Windows(kernels, scaler, ridge, durations_s(training))
+    scored_by_others = dict(_left_out(own, training, windows, features, labels))
+    classes = list(ridge.classes_)
+    best = chosen(GRID, training, lambda each, stream: decoded(stream, scored_by_others[stream], classes, each))
+    return lambda stream: decoded(stream, scored(own, stream), classes, best)
 
-    name: str = "MiniRocket windows, an explicit none"
 
-    def fit(self, training: Sequence[Stream]) -> FittedWindows:
-        windows = training_windows(training, np.random.default_rng(SEED))
-        labels = np.array([window.label for window in windows])
-        kernels = MiniRocket(random_state=SEED)
-        features = np.asarray(kernels.fit_transform(inputs_of(windows)))
-        scaler = StandardScaler(with_mean=False, copy=False)
-        features = scaler.fit_transform(features)
-        ridge = RidgeClassifierCV(alphas=np.logspace(-3, 3, 10)).fit(features, labels)
-        fitted = FittedWindows(kernels, scaler, ridge, durations_s(training), GRID[0])
-        scored_by_others = dict(_left_out(fitted, training, windows, features, labels))
-        classes = list(ridge.classes_)
-        best = chosen(GRID, training, lambda own, stream: decoded(stream, scored_by_others[stream], classes, own))
-        return FittedWindows(kernels, scaler, ridge, fitted.lengths_s, best)
+ROCKET_WINDOWS = Method("MiniRocket windows, an explicit none", fitted)
 
 
 def _left_out(
-    fitted: FittedWindows, training: Sequence[Stream], windows: Sequence[Window], features: Floats, labels: Any
+    fitted: Windows, training: Sequence[Stream], windows: Sequence[Window], features: Floats, labels: Any
 ) -> Iterator[tuple[Stream, Scored]]:
     """Score each stream by a ridge that has not seen its person."""
     for people in inner_folds(training):
         others = np.array([window.stream.person not in people for window in windows])
         ridge = RidgeClassifier(alpha=fitted.ridge.alpha_).fit(features[others], labels[others])
-        inner = FittedWindows(fitted.kernels, fitted.scaler, ridge, fitted.lengths_s, fitted.thresholds)
         for stream in training:
             if stream.person in people:
-                yield stream, scored(inner, stream)
+                yield stream, scored(fitted._replace(ridge=ridge), stream)
 
 
 def inputs_of(windows: Sequence[Window]) -> Floats:
@@ -118,7 +110,7 @@ def resampled(stream: Stream, first: Indices, last: Indices) -> Floats:
     return np.ascontiguousarray(between.transpose(0, 2, 1))
 
 
-def scored(fitted: FittedWindows, stream: Stream) -> Scored:
+def scored(fitted: Windows, stream: Stream) -> Scored:
     """Give every window of a stream its best action and that one's margin over none."""
     ends, starts = sliding(stream, fitted.lengths_s)
     step, duration = np.nonzero(starts >= 0)

@@ -25,7 +25,7 @@ from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 
 from .bench import FALSE, Bench, Goals, scores_table
-from .ours import Ours
+from .ours import OURS
 from .simulated import TAUGHT, TAUGHT_REPETITIONS, TESTED, TESTED_REPETITIONS, scene_of
 
 IMAGE_HZ = 15
@@ -72,7 +72,7 @@ All goes through the nodes, not live; `actum demo` runs such scenes live."""
     yield scores_table(pooled, GOALS)
     yield f"""Objects: the scenes of the first {len(WITH_IMAGES)} of the people tested, with {IMAGE_HZ} drawn images a
 second, through marker tracker and fusion; an object is right where it is named in an action that is found and right."""
-    actions = scores_of(pooled[Ours.name]).event
+    actions = scores_of(pooled[OURS]).event
     rows = [
         ["actions found and right", *Score(actions.right, actions.truths).cells, "≥ 95", "≥ 99"],
         ["objects right among them", *objects(bench.model_of(fold.training)).cells, "≥ 98", "≥ 99"],

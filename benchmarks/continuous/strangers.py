@@ -8,7 +8,7 @@ from benchmarks.recognition.datasets import Datasets
 from benchmarks.recognition.scores import table
 
 from actum.recording import Recording
-from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.detections import Detection, Found, Truth
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 
@@ -66,16 +66,12 @@ def _recordings(streams: Sequence[Stream]) -> list[Recording]:
 
 def _row(taught: str, watched: str, model: Model, recordings: Sequence[Recording]) -> list[str]:
     found = sum((replayed(SomClassifier(model), recording) for recording in recordings), Found())
-    minutes = sum(_minutes(stretch) for stretch in found.seen)
+    minutes = sum((stretch.end_ns - stretch.start_ns) / MINUTE_NS for stretch in found.seen)
     told, excused = len(found.detections), sum(_is_alike(each, found.truths) for each in found.detections)
     labels = [each.label for each in found.detections]
     often = max(labels, key=labels.count, default="–")
     rate = number((told - excused) / minutes)
     return [taught, watched, f"{minutes:.1f}", str(told), str(excused), rate, f"{often} ({labels.count(often)})"]
-
-
-def _minutes(stretch: Stretch) -> float:
-    return (stretch.end_ns - stretch.start_ns) / MINUTE_NS
 
 
 def _is_alike(told: Detection, truths: Sequence[Truth]) -> bool:

@@ -3,13 +3,11 @@
 python -m benchmarks.objects [--only PART]
 """
 
-import platform
 from collections.abc import Iterator
-from importlib.metadata import version
 from pathlib import Path
 
 import cv2
-from benchmarks.page import measure_page, part_asked_for
+from benchmarks.page import measure_page, part_asked_for, versions_of
 
 from .parts import (
     CONTACT_PEOPLE,
@@ -25,14 +23,13 @@ from .parts import (
 )
 
 PAGE = Path(__file__).with_name("results.md")
-LIBRARIES = ("numpy", "opencv-python-headless")
 
 
 def header() -> Iterator[str]:
     """Say what was run, and how."""
-    versions = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    versions = versions_of("numpy", "opencv-python-headless")
     yield "# The right object in scenes that are hard to see"
-    yield f"""`make bench-objects`: Python {platform.python_version()}, {versions}; one core."""
+    yield f"""`make bench-objects`: {versions}; one core."""
     yield f"""Simulated people act at a table with three marked objects in a row. Images are drawn and compressed
 ({IMAGE_HZ} a second, {STILL_IMAGE_HZ} for pointing), markers detected in them and tracked; hands and hips are seen 30
 times a second with a Kinect's noise. Fusion is told which action was done, and when, as if it were recognised: nothing

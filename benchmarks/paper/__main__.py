@@ -3,14 +3,10 @@
 python -m benchmarks.paper [--only PART]
 """
 
-import platform
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.page import measure_page, part_asked_for
+from benchmarks.page import measure_sections, versions_of
 
 from .data import Data
 from .details import details
@@ -20,7 +16,6 @@ from .scene import scene
 from .steps import steps
 
 PAGE = Path(__file__).with_name("results.md")
-LIBRARIES = ("numpy", "opencv-python-headless")
 PARTS: Mapping[str, tuple[str, Callable[[Data], Iterator[str]]]] = {
     "protocols": ("The protocols", protocols),
     "scene": ("Table 2 of the paper", scene),
@@ -32,9 +27,9 @@ PARTS: Mapping[str, tuple[str, Callable[[Data], Iterator[str]]]] = {
 
 def header() -> Iterator[str]:
     """Say what was run, and how it was chosen."""
-    versions = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    versions = versions_of("numpy", "opencv-python-headless")
     yield "# The paper's recogniser"
-    yield f"""`make bench-paper`: Python {platform.python_version()}, {versions}; one core."""
+    yield f"""`make bench-paper`: {versions}; one core."""
     yield """The preset `paper` is the architecture of Gharaee, Gärdenfors and Johnsson (2017), as
 [docs/paper.md](../../docs/paper.md) goes through it. What the paper leaves open was chosen by cross-validation on
 people 1, 3, 5, 7 and 9 of MSR Action3D (each left out; a random quarter of their share of the author's set), on
@@ -42,16 +37,8 @@ UTKinect and on simulated actors 0 and 20 to 22. That axes, centres of activity 
 was seen first on other draws of the author's set and on all people of MSR Action3D, so that these are not unseen."""
 
 
-def section(data: Data, part: str) -> str:
-    """Measure one part."""
-    title, measure = PARTS[part]
-    return "\n\n".join([f"## {title}", *measure(data)])
-
-
 def main() -> None:
-    only = part_asked_for("benchmarks.paper", __doc__, PARTS)
-    with tempfile.TemporaryDirectory() as folder:
-        measure_page(PAGE, only, header(), PARTS, partial(section, Data(Path(folder))))
+    measure_sections(PAGE, __doc__, header(), PARTS, Data)
 
 
 if __name__ == "__main__":

@@ -4,13 +4,10 @@ ACTUM_DATA=… python -m benchmarks.recognition [--only PART]
 """
 
 import platform
-import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.page import measure_page, part_asked_for
+from benchmarks.page import measure_sections, versions_of
 
 from .accuracy import action_sets, authors, cross_subject, random_halves, utkinect
 from .bench import Bench
@@ -30,7 +27,6 @@ from .stillness import stillness
 from .unknown import unknown_actions
 
 PAGE = Path(__file__).with_name("results.md")
-LIBRARIES = ("numpy", "numba", "aeon", "scikit-learn")
 PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
     "cross-subject": ("MSR Action3D, odd and even people", cross_subject),
     "action-sets": ("MSR Action3D, AS1 to AS3", action_sets),
@@ -52,9 +48,9 @@ PARTS: Mapping[str, tuple[str, Callable[[Bench], Iterator[str]]]] = {
 
 def header() -> Iterator[str]:
     """Say what was run, on what, and what had a part in its making."""
-    versions = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    versions = versions_of("numpy", "numba", "aeon", "scikit-learn")
     yield "# Recognition beside its peers"
-    yield f"""`make bench-recognition`: Python {platform.python_version()}, {versions}; {_processor()}, one core,
+    yield f"""`make bench-recognition`: {versions}; {_processor()}, one core,
 one thread. Every model and every draw has seed {SEED}, fixed in the code and not chosen."""
     yield f"""Preset `{OURS.preset.name}` is the default. Its choices were made by cross-validation between people
 1, 3, 5, 7 and 9 of MSR Action3D and on simulated actors. Two were also seen to help in three quarters of the ten
@@ -79,17 +75,8 @@ def _processor() -> str:
     return names[0] if names else platform.processor()
 
 
-def section(bench: Bench, part: str) -> str:
-    """Measure one part."""
-    title, measure = PARTS[part]
-    return "\n\n".join([f"## {title}", *measure(bench)])
-
-
 def main() -> None:
-    only = part_asked_for("benchmarks.recognition", __doc__, PARTS)
-    with tempfile.TemporaryDirectory() as folder:
-        bench = Bench(Datasets(Path(folder)))
-        measure_page(PAGE, only, header(), PARTS, partial(section, bench))
+    measure_sections(PAGE, __doc__, header(), PARTS, lambda folder: Bench(Datasets(folder)))
 
 
 if __name__ == "__main__":

@@ -1,20 +1,11 @@
 """What all parts share: the sets, and every recogniser trained once on the same sequences."""
 
 from collections.abc import Sequence
+from typing import Any
 
 from .datasets import Datasets, Example
-from .ours import OURS, PAPERS, FittedMaps, Maps
-from .peers import (
-    DTW,
-    MINIROCKET,
-    MINIROCKET_UPRIGHT,
-    MULTIROCKET,
-    NEAREST,
-    Fitted,
-    FittedRocket,
-    Recogniser,
-    Rocket,
-)
+from .ours import OURS, PAPERS
+from .peers import DTW, MINIROCKET, MINIROCKET_UPRIGHT, MULTIROCKET, NEAREST, F_co, Recogniser, Trains
 from .scores import Score
 from .splits import Split
 
@@ -26,26 +17,15 @@ class Bench:
 
     def __init__(self, data: Datasets) -> None:
         self.data = data
-        self._fitted: dict[tuple[Recogniser, tuple[Example, ...]], Fitted] = {}
+        self._fitted: dict[tuple[Recogniser, tuple[Example, ...]], Any] = {}
 
-    def maps(self, maps: Maps, examples: Sequence[Example]) -> FittedMaps:
-        """Train a preset, or return what was trained."""
-        fitted = self.fitted(maps, examples)
-        assert isinstance(fitted, FittedMaps)
-        return fitted
-
-    def rocket(self, rocket: Rocket, examples: Sequence[Example]) -> FittedRocket:
-        """Train kernels and ridge, or return what was trained."""
-        fitted = self.fitted(rocket, examples)
-        assert isinstance(fitted, FittedRocket)
-        return fitted
-
-    def fitted(self, recogniser: Recogniser, examples: Sequence[Example]) -> Fitted:
+    def fitted(self, recogniser: Trains[F_co], examples: Sequence[Example]) -> F_co:
         """Train a recogniser, or return what was trained."""
         key = recogniser, tuple(examples)
         if key not in self._fitted:
             self._fitted[key] = recogniser.fit(examples)
-        return self._fitted[key]
+        fitted: F_co = self._fitted[key]
+        return fitted
 
     def score(self, recogniser: Recogniser, split: Split, share: float = 1.0) -> Score:
         """Train, and count the right answers after a share of each test sequence."""

@@ -27,7 +27,7 @@ def _answers(bench: Bench, maps: Maps) -> tuple[Floats, Floats]:
     """Return the confidences and whether each answer was right."""
     confidences, right = [], []
     for split in halves(bench.data.msr):
-        recognitions = bench.maps(maps, split.training).recognitions(split.test)
+        recognitions = bench.fitted(maps, split.training).recognitions(split.test)
         confidences += [recognition.confidence for recognition in recognitions]
         right += [r.label == example.label for r, example in zip(recognitions, split.test, strict=True)]
     return np.array(confidences), np.array(right)

@@ -77,7 +77,7 @@ def _rows(bench: Bench, case: str, joints: Collection[str], frames: Frames) -> I
     even = [recording for recording in bench.data.msr_recordings if int(recording.person) % 2 == 0]
     samples = samples_from([Lacking(recording.path, joints, frames) for recording in even]).usable
     for maps in (OURS, PAPERS):
-        model = bench.maps(maps, odd_even(bench.data.msr).training).model
+        model = bench.fitted(maps, odd_even(bench.data.msr).training).model
         answers = [answer(model, encoded(model, sample)) for sample in samples]
         right = sum(own.label == sample.label for own, sample in zip(answers, samples, strict=True))
         confidence = f"{np.mean([own.confidence for own in answers]):.3f}"

@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from aeon.distances import dtw_pairwise_distance
@@ -34,13 +34,19 @@ class Fitted(Protocol):
         ...
 
 
-class Recogniser(Protocol):
+F_co = TypeVar("F_co", bound=Fitted, covariant=True)
+
+
+class Trains(Protocol[F_co]):
     """Something to train."""
 
     @property
     def name(self) -> str: ...
 
-    def fit(self, examples: Sequence[Example]) -> Fitted: ...
+    def fit(self, examples: Sequence[Example]) -> F_co: ...
+
+
+Recogniser = Trains[Fitted]
 
 
 def camera_axes(example: Example) -> Floats:

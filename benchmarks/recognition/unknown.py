@@ -13,7 +13,7 @@ from .datasets import Example
 from .ours import OURS
 from .peers import MINIROCKET
 from .scores import Difference, Floats, Score, table
-from .splits import DRAWS, LEFT_OUT, Split, actions_left_out, odd_even
+from .splits import DRAWS, LEFT_OUT, actions_left_out, odd_even
 
 FAMILIARITY, CONFIDENCE = "actum, familiarity", "actum, confidence"
 MARGIN, LARGEST = "MiniRocket + ridge, largest minus second", "MiniRocket + ridge, largest"
@@ -43,7 +43,9 @@ def unknown_actions(bench: Bench) -> Iterator[str]:
     """Three actions left out of training, again and again."""
     drawn = Outcomes()
     for unknown, split in actions_left_out(odd_even(bench.data.msr)):
-        _test(bench, drawn, unknown, split)
+        answers = bench.fitted(OURS, split.training).recognitions(split.test)
+        decisions = bench.fitted(MINIROCKET, split.training).decisions(split.test)
+        drawn.add(unknown, _known(split.test, unknown), answers, decisions)
     yield f"""MSR Action3D, odd people trained, even people tested; {LEFT_OUT} of the 20 actions, drawn {DRAWS} times,
 are left out of training and tested with the others. AUROC: how often a trained action scores higher than one left out
 (0.5 is chance). Differences are paired by draw, ± standard error."""
@@ -54,12 +56,6 @@ are left out of training and tested with the others. AUROC: how often a trained 
         [", ".join(names), *(f"{own[i]:.3f}" for own in drawn.areas.values())] for i, names in enumerate(drawn.unknown)
     )
     yield table(("left out", *drawn.areas), rows)
-
-
-def _test(bench: Bench, drawn: Outcomes, unknown: list[str], split: Split) -> None:
-    answers = bench.maps(OURS, split.training).recognitions(split.test)
-    decisions = bench.rocket(MINIROCKET, split.training).decisions(split.test)
-    drawn.add(unknown, _known(split.test, unknown), answers, decisions)
 
 
 def _known(examples: Sequence[Example], unknown: Sequence[str]) -> list[bool]:

@@ -3,13 +3,11 @@
 python -m benchmarks.tracker [--only PART]
 """
 
-import platform
 from collections.abc import Callable, Iterator, Mapping
-from importlib.metadata import version
 from pathlib import Path
 
 import cv2
-from benchmarks.page import measure_page, part_asked_for
+from benchmarks.page import measure_page, part_asked_for, versions_of
 
 from .accuracy import FAMILIES, SIDES_PX, accuracy
 from .cut_outs import ANGLES_DEG, FAMILY, NUMBERS, SIDE_PX, cut_outs
@@ -18,7 +16,6 @@ from .rendering import SAMPLES
 from .speed import speed
 
 PAGE = Path(__file__).with_name("results.md")
-LIBRARIES = ("numpy", "opencv-python-headless")
 PARTS: Mapping[str, tuple[str, Callable[[], Iterator[str]]]] = {
     "speed": ("Speed", speed),
     "accuracy": ("Accuracy", accuracy),
@@ -58,9 +55,9 @@ whose side is right to 1.5 px: where the paper's outline is taken for the marker
 
 def header() -> Iterator[str]:
     """Say what was run."""
-    versions = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
+    versions = versions_of("numpy", "opencv-python-headless")
     yield "# The marker tracker beside OpenCV"
-    yield f"`make bench-tracker`: Python {platform.python_version()}, {versions}; one core."
+    yield f"`make bench-tracker`: {versions}; one core."
 
 
 def section(part: str) -> str:

@@ -118,8 +118,9 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         objects = _objects(rows, stamps_ns, sensor, path.stem)
         _check_targets(labels, _bodies(rows))
         kept = [label for label in labels if label.first < label.last]
-        marks = [m for i, label in enumerate(kept) for m in _marks(label, _id(path, label, i), stamps_ns, sensor)]
-        truths = [t for i, label in enumerate(kept) for t in _truths(label, _id(path, label, i), stamps_ns, sensor)]
+        named = [(f"{path.stem}_{label.hand}_{number:02d}", label) for number, label in enumerate(kept)]
+        marks = [mark for name, label in named for mark in _marks(label, name, stamps_ns, sensor)]
+        truths = [_truth(label, name, stamps_ns, sensor) for name, label in named if label.target is not None]
     except (KeyError, TypeError, ValueError, IndexError, InvalidOperation) as error:
         raise DatasetError(
             f"{path} does not hold a time stamp and the poses for every labelled frame ({error!r}): download the file "
@@ -133,10 +134,6 @@ def camera_from_world(point: Sequence[float]) -> Point:
     """Turn a point (3,) in the world's axes (z up) into the camera's (x right, y down, z forward)."""
     x, y, z = point
     return [x, -z, y]
-
-
-def _id(path: Path, label: Label, number: int) -> str:
-    return f"{path.stem}_{label.hand}_{number:02d}"
 
 
 def _position(row: Row, body: str) -> Point | None:
@@ -237,20 +234,17 @@ def _marks(label: Label, segment_id: str, stamps_ns: Sequence[int], sensor: str)
     return segment_marks(start_ns, end_ns, sensor, segment_id, label.action, AGENT, label.hand)
 
 
-def _truths(label: Label, segment_id: str, stamps_ns: Sequence[int], sensor: str) -> list[Truth]:
-    if label.target is None:
-        return []
-    return [
-        Truth(
-            stamp_ns=stamps_ns[label.last],
-            sensor=sensor,
-            kind="end",
-            segment_id=segment_id,
-            agent=AGENT,
-            hand=label.hand,
-            action=label.action,
-            object_id=label.target,
-            object_name=OBJECTS[label.target],
-            displacement_m=None,
-        )
-    ]
+def _truth(label: Label, segment_id: str, stamps_ns: Sequence[int], sensor: str) -> Truth:
+    assert label.target is not None
+    return Truth(
+        stamp_ns=stamps_ns[label.last],
+        sensor=sensor,
+        kind="end",
+        segment_id=segment_id,
+        agent=AGENT,
+        hand=label.hand,
+        action=label.action,
+        object_id=label.target,
+        object_name=OBJECTS[label.target],
+        displacement_m=None,
+    )

@@ -48,28 +48,21 @@ class ImportReport:
     outside: list[str] = field(default_factory=list)
     oddities: Counter[str] = field(default_factory=Counter)
 
-    def add(self, take: Take) -> None:
+    def add(self, take: Take | HandsTake) -> None:
         """Count one written take."""
         self.files += 1
-        self.frames += len(take.frames)
-        self.invalid_frames += sum(not frame.valid or not frame.agents for frame in take.frames)
-        self._add_labels(take)
-        self.excluded += "excluded" in take.metadata
-        self.skipped += take.skipped
-        self.oddities += take.oddities
-
-    def add_hands(self, take: HandsTake) -> None:
-        """Count one written take of hands and objects."""
-        self.files += 1
-        self.frames += len(take.postures)
-        self._add_labels(take)
-        self.skipped += take.skipped
-
-    def _add_labels(self, take: Take | HandsTake) -> None:
         self.persons.add(take.person)
         starts = [mark for mark in take.marks if mark.kind == "start"]
         self.segments += len(starts)
         self.actions |= {mark.label for mark in starts if mark.label}
+        self.skipped += take.skipped
+        if isinstance(take, HandsTake):
+            self.frames += len(take.postures)
+            return
+        self.frames += len(take.frames)
+        self.invalid_frames += sum(not frame.valid or not frame.agents for frame in take.frames)
+        self.excluded += "excluded" in take.metadata
+        self.oddities += take.oddities
 
     def lines(self) -> list[str]:
         """Return the report's lines."""
@@ -164,7 +157,7 @@ def import_bimacs(src: Path, out: Path, progress: Progress) -> ImportReport:
     for file in files:
         take = bimacs.read_take(file, SENSOR)
         write_recording(out / f"{take.name}.mcap", take.messages(), person=take.person, source="bimacs")
-        report.add_hands(take)
+        report.add(take)
         progress(report.files, len(files))
     return report
 

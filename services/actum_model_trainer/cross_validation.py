@@ -6,10 +6,11 @@ from actum.recording import Recording
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.evaluation import Evaluation, Prediction, prediction, segment_labels
 from actum_model_trainer.progress import Progress, prefixed, silent
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.recorded_segments import sensors
 from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.samples import SegmentSample, Unusable
-from actum_model_trainer.training import TrainingError, train
+from actum_model_trainer.training import train
 from som_classifier.model import Model
 from som_classifier.presets import Preset
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
 from actum_model_trainer.basis import Basis
-from actum_model_trainer.ridge import Ridge, ridge
+from actum_model_trainer.ridge import DualRidge, PrimalRidge, ridge
 
 FOLDS_WITHIN_AN_ACTION = 5  # of an action that one person alone did
 MAX_PERSON_FOLDS = 10  # more people share folds: each fold costs a linear solve, and more folds change little
@@ -111,7 +111,7 @@ def fit_discriminants(
     )
 
 
-def _cross_validated(fitted: Ridge, indicators: Array, folds: Indices) -> Array:
+def _cross_validated(fitted: DualRidge | PrimalRidge, indicators: Array, folds: Indices) -> Array:
     """Return the scores (n, actions), cross-validated for all vectors whose action occurs in another fold, too.
 
     Rows beyond the n folds are background, which is fitted to in every fold.
@@ -126,7 +126,7 @@ def _cross_validated(fitted: Ridge, indicators: Array, folds: Indices) -> Array:
     return scores
 
 
-def _untaught(fitted: Ridge, indicators: Array, count: int) -> Array:
+def _untaught(fitted: DualRidge | PrimalRidge, indicators: Array, count: int) -> Array:
     """Return the scores (count, actions) of the first rows by discriminants that were fitted without their action."""
     scores = np.zeros((count, indicators.shape[1]))
     for of_action in indicators[:count].T:

@@ -7,7 +7,7 @@ anew where rows are left out.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,34 +19,7 @@ SMALLEST_LENGTH2 = 1e-9
 """Squared length of vectors: the penalty must not be 0 where all are the same."""
 
 
-class Ridge(Protocol):
-    """A fitted regression of indicators (n, actions) on vectors (n, inputs)."""
-
-    @property
-    def axes(self) -> NDArray[np.float32]:
-        """The axes, (inputs, actions)."""
-        ...
-
-    @property
-    def offsets(self) -> NDArray[np.float32]:
-        """The offsets, (actions,)."""
-        ...
-
-    @property
-    def scores(self) -> Array:
-        """The scores of all rows, (n, actions)."""
-        ...
-
-    def held_out(self, rows: Indices) -> Array:
-        """Return the scores (rows, actions) by a regression that was fitted to all other rows."""
-        ...
-
-    def each_left_out(self, count: int) -> Array:
-        """Return the scores of the rows from `count` on, each by a regression that was fitted to all others."""
-        ...
-
-
-def ridge(vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> Ridge:
+def ridge(vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> "DualRidge | PrimalRidge":
     """Fit in the form that costs less.
 
     Args:

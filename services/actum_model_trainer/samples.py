@@ -85,11 +85,6 @@ class LabelledStream:
         )
 
     @property
-    def holds_actions(self) -> bool:
-        """Whether something in it is labelled as an action."""
-        return any(label != NONE for *_, label in self.segments)
-
-    @property
     def is_counterexample(self) -> bool:
         """Whether most of it is labelled as none of the actions."""
         of_none = [

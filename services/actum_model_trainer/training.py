@@ -18,21 +18,6 @@ from actum_model_trainer.spotting.spotting_training import digest_of_background,
 from som_classifier.model import NOTHING_KEPT, Arrays, Model
 from som_classifier.presets import PRESETS, Preset
 
-__all__ = [
-    "ADDITIONS",
-    "CONTINUATIONS",
-    "SEARCHES",
-    "TRAININGS",
-    "UPDATES",
-    "TrainingError",
-    "add_to",
-    "train",
-    "train_to_spot",
-    "update",
-    "with_continuation",
-]
-
-
 TRAININGS: dict[str, Callable[[Sequence[SegmentSample], Sequence[LabelledStream], Any, int, Progress], Model]] = {
     "paper": paper_training.train,
     "pyramid": pyramid_training.train,

@@ -10,7 +10,7 @@ from actum_model_trainer.confidence import averaged_with_prior, expected_log_err
 from actum_model_trainer.convolution_training import blended
 from actum_model_trainer.discriminants import Discriminants, FittedStage, fit_discriminants
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
-from actum_model_trainer.training_data import SampleMeasures, TrainingData
+from actum_model_trainer.training_data import TrainingData
 from som_classifier.presets import Prior, PyramidPreset
 from som_classifier.verifier import Verifier
 
@@ -19,24 +19,6 @@ STRANGE_QUANTILE = 0.9
 STRANGE_SHARE = 0.25
 """How often a marked segment is assumed to be an action that nobody taught, and how often any other movement, for each
 that is taught."""
-
-
-@dataclass(frozen=True)
-class Shown:
-    """What the samples of a training show of how people differ.
-
-    Attributes:
-        people: their number.
-        one_sample_each: whether nobody has performed an action more than once.
-    """
-
-    people: int
-    one_sample_each: bool
-
-    @classmethod
-    def by(cls, measures: SampleMeasures) -> "Shown":
-        """Look at the samples' people."""
-        return cls(measures.everybody, measures.one_sample_each)
 
 
 def trained_verifier(labelled: FittedStage, data: TrainingData, preset: PyramidPreset) -> Verifier:
@@ -53,8 +35,8 @@ def trained_verifier(labelled: FittedStage, data: TrainingData, preset: PyramidP
     maps = fit_discriminants(data.stages[-1].vectors, indicators, of_row, preset.shrinkage, data.background)
     convolutions = fit_discriminants(convolved.taught, indicators, of_row, shrinkage, convolved.background)
     maps, convolutions = maps.through(data.pooled_basis), convolutions.through(data.convolved_basis)
-    likenesses, shown = Likenesses.of(labelled, blended(maps, convolutions, weight)), Shown.by(measures)
-    slope, intercept = verification(likenesses, preset.prior, shown)
+    likenesses, people = Likenesses.of(labelled, blended(maps, convolutions, weight)), measures.everybody
+    slope, intercept = verification(likenesses, preset.prior, people)
     return Verifier(
         (maps.axes / (1 + weight)).astype(np.float32),
         (weight / (1 + weight) * convolved.axes(convolutions)).astype(np.float32),
@@ -62,7 +44,7 @@ def trained_verifier(labelled: FittedStage, data: TrainingData, preset: PyramidP
         expected_log_errors(measures.log_errors, data.targets, preset.prior),
         slope,
         intercept,
-        *least_likenesses(likenesses, preset, shown),
+        *least_likenesses(likenesses, preset, people, measures.one_sample_each),
     )
 
 
@@ -95,7 +77,7 @@ class Likenesses:
         )
 
 
-def verification(of: Likenesses, prior: Prior, shown: Shown) -> tuple[float, float]:
+def verification(of: Likenesses, prior: Prior, people: int) -> tuple[float, float]:
     """Return slope and intercept of the logistic regression of whether a segment is a true instance of its action.
 
     Instances are what was taught, scored without its person. What is none are the same, scored without their action,
@@ -111,18 +93,18 @@ def verification(of: Likenesses, prior: Prior, shown: Shown) -> tuple[float, flo
     own = logistic_fit(np.concatenate(groups), is_right, np.concatenate(counts))
     slope, of_untaught, intercept = prior.verification
     expected = slope, intercept + of_untaught * float(np.quantile(of.untaught, STRANGE_QUANTILE))
-    found = averaged_with_prior(np.array(own), np.array(expected), prior, shown.people)
+    found = averaged_with_prior(np.array(own), np.array(expected), prior, people)
     return float(found[0]), float(found[1])
 
 
-def least_likenesses(of: Likenesses, preset: PyramidPreset, shown: Shown) -> tuple[float, float]:
+def least_likenesses(of: Likenesses, preset: PyramidPreset, people: int, one_sample_each: bool) -> tuple[float, float]:
     """Return the likenesses that shares of true instances exceed: `preset.known_share`, and `preset.found_share`.
 
     The quantiles of what was taught, scored without its person and rightly called, are averaged with the prior's.
     """
     prior = preset.prior
-    expected = prior.least_from_one if shown.one_sample_each else prior.least_likeness
+    expected = prior.least_from_one if one_sample_each else prior.least_likeness
     taught = of.taught[of.is_right] if of.is_right.any() else of.taught
     own = np.quantile(taught, [1 - preset.known_share, 1 - preset.found_share])
-    known, found = averaged_with_prior(own, np.array(expected), prior, shown.people)
+    known, found = averaged_with_prior(own, np.array(expected), prior, people)
     return float(known), float(found)

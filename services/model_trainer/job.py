@@ -24,9 +24,10 @@ from actum_examples.take import read_take
 from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.continuous.watching import NoSpotterError
 from actum_model_trainer.progress import Progress
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.sample_reading import select
 from actum_model_trainer.sampling import sampled_from
-from actum_model_trainer.training import TrainingError, train_to_spot, update, with_continuation
+from actum_model_trainer.training import train_to_spot, update, with_continuation
 from model_trainer.set_evaluation import evaluate_set
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, kept_in, load_model

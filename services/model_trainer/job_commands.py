@@ -9,7 +9,7 @@ from actum.commands import Command, Refusal
 from actum.messages import JobState
 from model_trainer.changes import Changes, on_disk
 from model_trainer.job import MODEL, TAKE
-from model_trainer.job_process import Ended, JobRequest, RunningJob
+from model_trainer.job_process import Ended, JobProcess, JobRequest
 from model_trainer.job_store import Job, JobStore
 from model_trainer.model_store import ModelStore
 from model_trainer.replies import Uploaded, counted
@@ -19,7 +19,7 @@ from model_trainer.upload_store import UploadStore
 from som_classifier.model_loading import ModelError
 from som_classifier.presets import DEFAULT, PRESETS
 
-Start = Callable[[JobRequest], RunningJob]
+Start = Callable[[JobRequest], JobProcess]
 """Starts a job."""
 KINDS = {"train": "a training", "evaluate": "a test", "import": "a video import"}
 """What a job is called, by its kind."""
@@ -50,7 +50,7 @@ class JobCommands:
         self._start_process = start
         self._date = date
         self._job = jobs.newest()
-        self._running: RunningJob | None = None
+        self._running: JobProcess | None = None
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:

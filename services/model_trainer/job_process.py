@@ -7,7 +7,7 @@ import sys
 import threading
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from actum.atomic_file import claim
 from actum.runtime.stopping import PARENT
@@ -51,18 +51,6 @@ class Ended:
 
     result: dict[str, Any] | None
     error: str = ""
-
-
-class RunningJob(Protocol):
-    """A job that was started."""
-
-    def look(self) -> Progressing | Ended | None:
-        """Return how far it is, or how it ended; None before it has said anything."""
-        ...
-
-    def end(self) -> None:
-        """End it, whatever it does."""
-        ...
 
 
 class JobProcess:

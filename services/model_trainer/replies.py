@@ -99,16 +99,7 @@ class ModelListed(Reply):
     @classmethod
     def of(cls, stored: StoredModel, active: str | None) -> "ModelListed":
         """Describe a model."""
-        return cls(
-            id=stored.id,
-            created=stored.created,
-            set=stored.set,
-            labels=list(stored.labels),
-            people=list(stored.people),
-            samples=stored.samples,
-            active=stored.id == active,
-            scores=stored.scores,
-        )
+        return cls(id=stored.id, active=stored.id == active, **stored.model_dump())
 
 
 class Everything(Reply):

@@ -1,10 +1,9 @@
 """What is listed of a model, and the file beside it that says so."""
 
 import re
-from dataclasses import dataclass, field
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, FiniteFloat
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from model_trainer.small_files import small_file
 
@@ -13,7 +12,16 @@ ID = re.compile("[0-9a-f]{12}")
 
 
 class About(BaseModel):
-    """What stands beside a model's file."""
+    """What stands beside a model's file.
+
+    Attributes:
+        created: when it came (ISO 8601).
+        set: the set that it was trained on; empty where that is not known.
+        labels: its actions.
+        people: whose examples it was trained on.
+        samples: the number of examples.
+        scores: its known scores, by name.
+    """
 
     model_config = ConfigDict(strict=True)
 
@@ -25,27 +33,15 @@ class About(BaseModel):
     scores: dict[str, FiniteFloat]
 
 
-@dataclass(frozen=True)
-class StoredModel:
-    """What is listed of a model.
+class StoredModel(About):
+    """What is listed of a model in a file."""
 
-    Attributes:
-        created: when it came (ISO 8601).
-        set: the set that it was trained on; empty where that is not known.
-        labels: its actions.
-        people: whose examples it was trained on.
-        samples: the number of examples.
-        scores: its known scores, by name.
-    """
+    path: Path = Field(exclude=True)
 
-    id: str
-    path: Path
-    created: str
-    set: str
-    labels: tuple[str, ...]
-    people: tuple[str, ...]
-    samples: int
-    scores: dict[str, float] = field(default_factory=dict)
+    @property
+    def id(self) -> str:
+        """Its name: a digest of all it holds."""
+        return self.path.stem
 
 
 def described(path: Path) -> StoredModel | None:
@@ -60,13 +56,4 @@ def described(path: Path) -> StoredModel | None:
 
 def stored(path: Path, about: About) -> StoredModel:
     """Return what is listed of the model in a file."""
-    return StoredModel(
-        path.stem,
-        path,
-        about.created,
-        about.set,
-        tuple(about.labels),
-        tuple(about.people),
-        about.samples,
-        about.scores,
-    )
+    return StoredModel(path=path, **about.model_dump())

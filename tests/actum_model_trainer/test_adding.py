@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from actum_model_trainer.provenance import digest_of
+from actum_model_trainer.provenance import TrainingError, digest_of
 from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.samples import LabelledStream, Samples, SegmentSample
-from actum_model_trainer.training import TrainingError, add_to, train, train_to_spot, update
+from actum_model_trainer.training import add_to, train, train_to_spot, update
 from people import STANDING
 from performers import TINY, TINY_PAPER, posed
 from repeating import eased

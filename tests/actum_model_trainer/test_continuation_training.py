@@ -7,8 +7,9 @@ import pytest
 
 from actum.node import SECOND_NS
 from actum_model_trainer.continuation_data import MOST_INSTANTS, fitted_shares, instants_of
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream
-from actum_model_trainer.training import CONTINUATIONS, TrainingError, add_to, train, update, with_continuation
+from actum_model_trainer.training import CONTINUATIONS, add_to, train, update, with_continuation
 from continued import KINDS, continuation_of, continued, standing_stream, without_continuation
 from people import STANDING
 from performers import TINY, TINY_PAPER

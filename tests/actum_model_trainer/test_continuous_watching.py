@@ -15,7 +15,7 @@ from actum_model_trainer.continuous.detections import Detection, Found, Stretch,
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import NoSpotterError, found_by, views_of, watched
 from actum_model_trainer.continuous_cross_validation import found_without_each, models_without, with_points
-from actum_model_trainer.training import TrainingError
+from actum_model_trainer.provenance import TrainingError
 from people import FRAME_NS, STANDING, skeleton
 from performers import TINY, mark, performance
 from recognisers import tiny_model

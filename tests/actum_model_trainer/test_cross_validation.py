@@ -9,9 +9,10 @@ from actum.recording import Recording
 from actum_model_trainer.answering import encoded
 from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import evaluate
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.training import TrainingError, train
+from actum_model_trainer.training import train
 from people import FRAME_NS, skeleton
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER, mark, performance
 from som_classifier.frames import Frame

@@ -5,7 +5,7 @@ import pytest
 
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.products import inner_products, inverse_root, solution
-from actum_model_trainer.ridge import DualRidge, PrimalRidge, Ridge, ridge
+from actum_model_trainer.ridge import DualRidge, PrimalRidge, ridge
 
 SHRINKAGE = 0.2
 COUNT = 20
@@ -20,7 +20,7 @@ def rows(inputs: int = 12) -> tuple[np.ndarray, np.ndarray]:
     return vectors, indicators
 
 
-def answers(fitted: Ridge) -> list[np.ndarray]:
+def answers(fitted: DualRidge | PrimalRidge) -> list[np.ndarray]:
     held_out = np.array([1, 4, 5])
     left_out = [fitted.held_out(held_out), fitted.each_left_out(COUNT)]
     return [fitted.axes, fitted.offsets, fitted.scores, *left_out]

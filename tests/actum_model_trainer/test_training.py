@@ -7,10 +7,10 @@ import pytest
 
 from actum.recording import Recording
 from actum_model_trainer.answering import answer, encoded
-from actum_model_trainer.provenance import digest_of
+from actum_model_trainer.provenance import TrainingError, digest_of
 from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.training import TrainingError, train
+from actum_model_trainer.training import train
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER
 from som_classifier.model import Model
 from som_classifier.presets import Preset

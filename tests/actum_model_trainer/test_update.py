@@ -7,8 +7,9 @@ from functools import cache
 import numpy as np
 import pytest
 
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import SegmentSample
-from actum_model_trainer.training import TrainingError, train, train_to_spot, update
+from actum_model_trainer.training import train, train_to_spot, update
 from performers import TINY, TINY_PAPER
 from som_classifier.first_layer import MAP_INPUTS
 from som_classifier.model import Model

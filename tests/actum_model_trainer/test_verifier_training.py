@@ -13,7 +13,6 @@ from actum_model_trainer.verifier_training import (
     STRANGE_QUANTILE,
     STRANGE_SHARE,
     Likenesses,
-    Shown,
     least_likenesses,
     verification,
 )
@@ -23,7 +22,8 @@ from som_classifier.pyramid_model import PyramidModel
 
 ALONE = replace(TINY.prior, people=0.0)
 """No prior: what the scores show."""
-SEVERAL = Shown(people=3, one_sample_each=False)
+SEVERAL = 3
+"""How many people."""
 
 
 def likenesses(true: float, untaught: float, background: float, strange: int = 300) -> Likenesses:
@@ -58,31 +58,33 @@ def test_what_is_wrongly_called_is_no_true_instance() -> None:
 def test_one_person_shows_nothing_of_others_so_the_prior_decides() -> None:
     of, (slope, of_untaught, intercept) = likenesses(0.9, 0.1, 0.1), TINY.prior.verification
     expected = slope, intercept + of_untaught * np.quantile(of.untaught, STRANGE_QUANTILE)
-    assert verification(of, TINY.prior, Shown(1, False)) == pytest.approx(expected)
-    many = verification(of, TINY.prior, Shown(500, False))
+    assert verification(of, TINY.prior, 1) == pytest.approx(expected)
+    many = verification(of, TINY.prior, 500)
     assert many == pytest.approx(verification(of, ALONE, SEVERAL), rel=0.05)
 
 
 def test_shares_of_true_instances_are_more_like_than_the_least() -> None:
     of = likenesses(0.9, 0.1, 0.1)
-    known, found = least_likenesses(of, replace(TINY, prior=ALONE), SEVERAL)
+    known, found = least_likenesses(of, replace(TINY, prior=ALONE), SEVERAL, one_sample_each=False)
     assert (of.taught > known).mean() == pytest.approx(TINY.known_share, abs=0.01)
     assert (of.taught > found).mean() == pytest.approx(TINY.found_share, abs=0.01)
 
 
 def test_the_least_of_one_person_is_the_priors() -> None:
     of = likenesses(0.9, 0.1, 0.1)
-    assert least_likenesses(of, TINY, Shown(1, False)) == TINY.prior.least_likeness
-    assert least_likenesses(of, TINY, Shown(1, True)) == TINY.prior.least_from_one
+    assert least_likenesses(of, TINY, 1, one_sample_each=False) == TINY.prior.least_likeness
+    assert least_likenesses(of, TINY, 1, one_sample_each=True) == TINY.prior.least_from_one
 
 
 def test_those_that_are_wrongly_called_do_not_lower_the_least() -> None:
     of, alone = likenesses(0.9, 0.1, 0.1), replace(TINY, prior=ALONE)
     is_right = np.append(of.is_right, np.zeros(200, dtype=bool))
     with_wrong = replace(of, taught=np.append(of.taught, np.zeros(200)), is_right=is_right)
-    assert least_likenesses(with_wrong, alone, SEVERAL) == least_likenesses(of, alone, SEVERAL)
+    assert least_likenesses(with_wrong, alone, SEVERAL, one_sample_each=False) == least_likenesses(
+        of, alone, SEVERAL, one_sample_each=False
+    )
     nothing_right = replace(of, is_right=np.zeros(800, dtype=bool))
-    assert np.isfinite(least_likenesses(nothing_right, alone, SEVERAL)).all()
+    assert np.isfinite(least_likenesses(nothing_right, alone, SEVERAL, one_sample_each=False)).all()
 
 
 @pytest.fixture(scope="module")

@@ -37,9 +37,9 @@ from actum_model_trainer.evaluation import evaluate
 from actum_model_trainer.foreseeing.intent_report import intent_report
 from actum_model_trainer.foreseeing.intent_scores import intent_scores
 from actum_model_trainer.foreseeing.recorded import recorded_in
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.report import report
 from actum_model_trainer.side_by_side import at_most
-from actum_model_trainer.training import TrainingError
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, Preset

@@ -13,11 +13,12 @@ from actum_command.commands.recording_options import AllOption, PersonOption, ch
 from actum_command.commands.terminal import fail, failing_on, refuse_unwritable, say
 from actum_model_trainer.advice import Contents, advice
 from actum_model_trainer.background import shipped
+from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.sample_reading import samples_from, select
 from actum_model_trainer.samples import LabelledStream, Samples
 from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.side_by_side import at_most
-from actum_model_trainer.training import TrainingError, add_to, train_to_spot, with_continuation
+from actum_model_trainer.training import add_to, train_to_spot, with_continuation
 from som_classifier.attention import ATTENTIONS, MOVING
 from som_classifier.model import Arrays, Model
 from som_classifier.model_loading import ModelError, kept_in, load_model

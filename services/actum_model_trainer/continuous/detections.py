@@ -3,49 +3,36 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
 from statistics import median_high
-from typing import Any, Protocol
-
-
-class Interval(Protocol):
-    """A span of one person's time: both ends are stamps of frames (ns) and belong to it."""
-
-    @property
-    def file(self) -> str:
-        """The recording's path; with the sensor behind it where the recording holds several."""
-        ...
-
-    @property
-    def agent(self) -> int:
-        """Whose time it is."""
-        ...
-
-    @property
-    def start_ns(self) -> int:
-        """Stamp of its first frame."""
-        ...
-
-    @property
-    def end_ns(self) -> int:
-        """Stamp of its last frame."""
-        ...
+from typing import Any
 
 
 @dataclass(frozen=True)
-class Detection:
-    """An action that was found.
+class Interval:
+    """A span of one person's time.
 
     Attributes:
         file: the recording's path; with the sensor behind it where the recording holds several.
-        agent: who is said to act.
-        decided_ns: stamp of the newest posture when the answer came.
-        confidence: of the label, 0 to 1.
-        point_ns: the action point that it claims, a single instant of the action; None for its middle.
+        agent: whose time it is; 0 for an action that was done while nobody was seen.
+        start_ns: stamp of its first frame.
+        end_ns: stamp of its last frame, which belongs to it.
     """
 
     file: str
     agent: int
     start_ns: int
     end_ns: int
+
+
+@dataclass(frozen=True)
+class Detection(Interval):
+    """An action that was found.
+
+    Attributes:
+        decided_ns: stamp of the newest posture when the answer came.
+        confidence: of the label, 0 to 1.
+        point_ns: the action point that it claims, a single instant of the action; None for its middle.
+    """
+
     decided_ns: int
     label: str
     confidence: float
@@ -58,36 +45,19 @@ class Detection:
 
 
 @dataclass(frozen=True)
-class Truth:
+class Truth(Interval):
     """An action that was done.
 
     Attributes:
-        file: the recording's path; with the sensor behind it where the recording holds several.
-        agent: who acted; 0 where nobody was seen meanwhile.
         point_ns: its annotated action point, the instant at which it can be recognised; None where there is none.
     """
 
-    file: str
-    agent: int
-    start_ns: int
-    end_ns: int
     label: str
     point_ns: int | None = None
 
 
-@dataclass(frozen=True)
-class Stretch:
-    """A time in which a person was seen without a longer break.
-
-    Attributes:
-        file: the recording's path; with the sensor behind it where the recording holds several.
-        agent: who was seen.
-    """
-
-    file: str
-    agent: int
-    start_ns: int
-    end_ns: int
+class Stretch(Interval):
+    """A time in which a person was seen without a longer break."""
 
 
 @dataclass(frozen=True)

@@ -109,7 +109,7 @@ def usable_streams(streams: Sequence[LabelledStream]) -> list[LabelledStream]:
 
 def digest_of_background(streams: Sequence[LabelledStream]) -> str:
     """Return the digest of those streams without an action that the search learns from."""
-    return digest_of_streams([each for each in usable_streams(streams) if not each.holds_actions])
+    return digest_of_streams([each for each in usable_streams(streams) if not each.marked.truths])
 
 
 def _chosen(

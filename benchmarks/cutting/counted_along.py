@@ -8,18 +8,19 @@ import numpy as np
 from benchmarks.originals import original
 from numpy.typing import NDArray
 
-from actum.messages import Agent, Skeleton, Truth
+from actum.messages import Skeleton, Truth
 from actum.node import SECOND_NS, Counters
-from actum.skeletons import INDEX, JOINTS
-from actum_dataset_importer import msrc12
-from actum_dataset_importer.takes import Take as Recorded
+from actum.skeletons import INDEX
 from actum_examples.cutting.counting import RepetitionCounter
 from scene_simulator.driven_simulator import DrivenSimulator
 from scene_simulator.programme import ACTIONS
 from scene_simulator.settings import Settings
 
-Array = NDArray[np.float64]
-Spans = Sequence[tuple[int, int]]
+from . import postures
+from .postures import Array, Spans
+
+Seen = tuple[list[Skeleton], list[int]]
+"""A stream of a gesture, and its action points (ns)."""
 
 PATIENCE_S = 30
 """How long a take may go on after the last repetition."""
@@ -27,20 +28,14 @@ ASKED = 5
 START_S = 4.0
 LATE_S = 25.0
 STILL_S = 40.0
-NEAR_M = 0.06
-"""A stretch of a recording is still where no joint above the hips gets farther within half a second."""
 SAME_M = 0.08
 """Still stretches of one person are joined where their mean postures differ by less at each such joint."""
-SHORTEST_STILL_S = 1.5
-BRIDGE_S = 0.4
-ABOVE_HIPS = [INDEX[name] for name in JOINTS if not name.endswith(("hip", "knee", "foot"))]
 GREY_NOISE = 4.0
 SWAY_PX = 3.0
 WEBCAM_HZ = 20
 WEBCAM_STILL_S = 20
 WEBCAM_PAUSE_S = 1.5
 WEBCAM_PEOPLE = {"development": ("1", "3", "5"), "held-out": ("2", "4", "6")}
-ACTORS = {"development": range(20, 24), "held-out": range(40, 48)}
 
 
 @dataclass(frozen=True)
@@ -78,7 +73,7 @@ def take_of(skeletons: Iterable[Skeleton], truths_ns: Spans, asked: int) -> Take
 
 def driven(people: str, actions: Sequence[str], asked: int, wait_s: float) -> Iterator[Take]:
     """The simulated person, who stands for a while and then does what is asked for, as the page's button has it."""
-    for actor in ACTORS[people]:
+    for actor in postures.ACTORS[people]:
         for action in actions:
             frames, truths_ns = performed(actor, action, asked, wait_s)
             yield take_of(frames, truths_ns, asked)
@@ -105,115 +100,51 @@ def performed(actor: int, action: str, times: int, wait_s: float) -> tuple[list[
 
 def still_simulated(people: str) -> Iterator[Take]:
     """The simulated person, who stands and sways; five repetitions are asked for."""
-    for actor in ACTORS[people]:
+    for actor in postures.ACTORS[people]:
         yield take_of(performed(actor, "", 0, STILL_S)[0], (), ASKED)
 
 
 def still_kinect(people: str, asked: int = ASKED) -> Iterator[Take]:
     """People of MSRC-12 in their still moments, joined to and fro."""
     for stills, _ in standing(people).values():
-        yield take_of(skeletons_of(joined(stills, STILL_S), SECOND_NS), (), asked)
+        yield take_of(postures.skeletons_of(postures.joined(stills, STILL_S), SECOND_NS), (), asked)
 
 
 def late_kinect(people: str) -> Iterator[Take]:
     """The same people stand still before and after one of their streams of a gesture, and are asked for its number."""
-    for stills, stream in standing(people).values():
-        frames = [frame for frame in stream.take.frames if is_whole(frame)]
-        before, after = joints_of(frames[:1])[0], joints_of(frames[-1:])[0]
-        lead = skeletons_of(placed(joined(stills, LATE_S), before, -1), SECOND_NS)
+    for stills, (seen, points_ns) in standing(people).values():
+        frames = [frame for frame in seen if postures.is_whole(frame)]
+        before, after = postures.joints_of(frames[:1])[0], postures.joints_of(frames[-1:])[0]
+        lead = postures.skeletons_of(postures.placed(postures.joined(stills, LATE_S), before, -1), SECOND_NS)
         shift_ns = lead[-1].stamp_ns + SECOND_NS // 2 - frames[0].stamp_ns
         middle = [renewed(frame, frame.stamp_ns + shift_ns) for frame in frames]
-        tail = skeletons_of(placed(joined(stills, PATIENCE_S), after, 0), middle[-1].stamp_ns + SECOND_NS // 2)
-        points_ns = [point + shift_ns for point in stream.points_ns]
-        yield take_of([*lead, *middle, *tail], [(point, point) for point in points_ns], len(points_ns))
+        tail = postures.skeletons_of(
+            postures.placed(postures.joined(stills, PATIENCE_S), after, 0), middle[-1].stamp_ns + SECOND_NS // 2
+        )
+        spans_ns = [(point + shift_ns, point + shift_ns) for point in points_ns]
+        yield take_of([*lead, *middle, *tail], spans_ns, len(points_ns))
 
 
-@dataclass(frozen=True)
-class Stream:
-    """One stream of MSRC-12 and its action points."""
-
-    take: Recorded
-    points_ns: list[int]
-
-
-def standing(people: str) -> dict[str, tuple[list[Array], Stream]]:
+def standing(people: str) -> dict[str, tuple[list[Array], Seen]]:
     """Return the still stretches of each person, and one of their streams with ten points."""
-    from benchmarks.cutting import chosen
-
-    found: dict[str, tuple[list[Array], list[Stream]]] = {}
-    for path, name in msrc12.stream_names(original("msrc12")):
-        take = msrc12.read_stream(path, name, "kinect0")
-        if chosen("msrc12", take.person, people):
-            points_ns = [int(point) * 1000 for point in msrc12.stored_stream(path, name).points_us]
-            stills, streams = found.setdefault(take.person, ([], []))
-            stills += still_stretches(joints_of([frame for frame in take.frames if is_whole(frame)]))
-            streams.append(Stream(take, points_ns))
+    found: dict[str, tuple[list[Array], list[Seen]]] = {}
+    for take, points_ns in postures.gestures(people):
+        stills, streams = found.setdefault(take.person, ([], []))
+        stills += postures.still_stretches(postures.joints_of(take.frames))
+        streams.append((take.frames, points_ns))
     return {
-        person: (alike(stills), max(streams, key=lambda each: len(each.points_ns) == 2 * ASKED))
+        person: (alike(stills), max(streams, key=lambda each: len(each[1]) == 2 * ASKED))
         for person, (stills, streams) in found.items()
         if stills
     }
 
 
-def still_stretches(joints: Array, rate_hz: int = 30) -> list[Array]:
-    """Return the stretches (frames, 15, 3) in which a person hardly moves."""
-    lag, reach = rate_hz // 2, rate_hz // 10
-    if len(joints) <= 4 * lag:
-        return []
-    windows = np.lib.stride_tricks.sliding_window_view(joints, 2 * reach + 1, axis=0).mean(axis=3)
-    ways_m = np.linalg.norm(windows[lag:] - windows[:-lag], axis=2)[:, ABOVE_HIPS].max(axis=1)
-    edges = np.flatnonzero(np.diff(np.concatenate([[0], ways_m < NEAR_M, [0]])))
-    spans = [(start, end + lag) for start, end in zip(edges[::2], edges[1::2], strict=True)]
-    return [joints[start:end] for start, end in spans if end - start >= SHORTEST_STILL_S * rate_hz]
-
-
 def alike(stills: list[Array]) -> list[Array]:
     """Return the longest still stretch, and up to four others of about the same posture."""
     longest_first = sorted(stills, key=lambda still: -len(still))
-    means = [(still - still[:, INDEX["torso"]][:, None]).mean(axis=0)[ABOVE_HIPS] for still in longest_first]
+    means = [(still - still[:, INDEX["torso"]][:, None]).mean(axis=0)[postures.ABOVE_HIPS] for still in longest_first]
     near = [np.linalg.norm(mean - means[0], axis=1).max() < SAME_M for mean in means]
     return [still for still, is_near in zip(longest_first, near, strict=True) if is_near][:ASKED]
-
-
-def joined(stills: Sequence[Array], seconds: float, rate_hz: int = 30) -> Array:
-    """Join still stretches, every other round backwards, to so many seconds, with short ways between them."""
-    whole, frames = list[Array](), round(seconds * rate_hz)
-    for number in range(frames):
-        part = stills[number % len(stills)]
-        part = placed(part if number // len(stills) % 2 == 0 else part[::-1], stills[0][0], 0)
-        if whole:
-            share = np.linspace(0, 1, round(BRIDGE_S * rate_hz) + 2)[1:-1, None, None]
-            whole.append((1 - share) * whole[-1][-1] + share * part[0])
-        whole.append(part)
-        if sum(map(len, whole)) >= frames:
-            break
-    return np.concatenate(whole)[:frames]
-
-
-def placed(part: Array, at: Array, index: int) -> Array:
-    """Move a part so that the torso of one of its frames is where another posture has it."""
-    moved: Array = part - part[index, INDEX["torso"]] + at[INDEX["torso"]]
-    return moved
-
-
-def is_whole(frame: Skeleton) -> bool:
-    return bool(frame.agents) and None not in frame.agents[0].joints
-
-
-def joints_of(frames: Sequence[Skeleton]) -> Array:
-    return np.array([frame.agents[0].joints for frame in frames], dtype=np.float64).reshape(-1, len(JOINTS), 3)
-
-
-def skeletons_of(joints: Array, first_ns: int, rate_hz: int = 30) -> list[Skeleton]:
-    return [
-        Skeleton(
-            stamp_ns=first_ns + number * SECOND_NS // rate_hz,
-            sensor="kinect0",
-            agents=[Agent(agent=1, joints=frame.tolist(), confidence=[1.0] * len(JOINTS))],
-            session_id="composed",
-        )
-        for number, frame in enumerate(joints)
-    ]
 
 
 def renewed(frame: Skeleton, stamp_ns: int) -> Skeleton:
@@ -268,22 +199,16 @@ def perceived(pictures: Sequence[NDArray[np.uint8]], stamps_ns: Sequence[int]) -
 
 def slow(people: str) -> Iterator[Take]:
     """MSR-Action3D at a third of its tempo, held for a second in the middle of each, five with pauses."""
-    from benchmarks import cutting
-
-    for number, ((_, _), parts) in enumerate(sorted(cutting.by_person_and_action(people).items())[::3]):
+    for number, ((_, _), parts) in enumerate(sorted(postures.by_person_and_action(people).items())[::3]):
         rng = np.random.default_rng(number)
         chain: list[tuple[Array, bool]] = []
         for part in islice(cycle(parts), ASKED):
-            slower = cutting.stretched(part, 3 * rng.uniform(*cutting.TEMPO))
-            middle = np.repeat(slower[len(slower) // 2][None], cutting.RATE_HZ, axis=0)
+            slower = postures.stretched(part, 3 * rng.uniform(*postures.TEMPO))
+            middle = np.repeat(slower[len(slower) // 2][None], postures.RATE_HZ, axis=0)
             held = np.concatenate([slower[: len(slower) // 2], middle, slower[len(slower) // 2 :]])
-            chain += [(cutting.paused(part, rng), False), (held, True)]
-        chain.append((np.repeat(parts[0][:1], PATIENCE_S * cutting.RATE_HZ, axis=0), False))
-        joints, bounds = cutting.bridged([part for part, _ in chain])
-        frames = skeletons_of(joints + rng.normal(0, cutting.JITTER_M, joints.shape), SECOND_NS, cutting.RATE_HZ)
-        stamps_ns = [frame.stamp_ns for frame in frames]
-        truths = [(stamps_ns[a], stamps_ns[b]) for (a, b), (_, true) in zip(bounds, chain, strict=True) if true]
-        yield take_of(frames, truths, ASKED)
+            chain += [(postures.paused(part, rng), False), (held, True)]
+        chain.append((np.repeat(parts[0][:1], PATIENCE_S * postures.RATE_HZ, axis=0), False))
+        yield take_of(*postures.composed_of(chain, rng), ASKED)
 
 
 TAKES: dict[str, Callable[[str], Iterator[Take]]] = {
