@@ -216,7 +216,8 @@ def _labels(folder: Path, person: str, take: str) -> list[Label]:
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
         raise DatasetError(
-            f"{files[0]} does not alternate frame numbers and labels for each hand ({error!r}): download the file again"
+            f"{files[0]} is damaged ({error!r}): each hand needs a list in which frame numbers and labels alternate. "
+            "Download the file again"
         ) from None
 
 

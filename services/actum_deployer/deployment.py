@@ -136,8 +136,9 @@ class Deployment:
         except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
             problem = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
-                f"{folder / FILE} cannot be used ({problem}): correct this file. Do not delete it, because it lists "
-                "the revoked credentials. If the file cannot be corrected, delete it and the folder authority/, run "
-                "'actum deploy init' and copy all folders to their machines again"
+                f"{folder / FILE} cannot be used ({problem}): correct this file. Do not delete this file alone, "
+                "because it lists the revoked credentials. If the file cannot be corrected, make all credentials anew: "
+                "delete the file and the folder authority/, run 'actum deploy init', and copy each host's folder to "
+                "its machine again"
             ) from None
         return read

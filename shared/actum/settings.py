@@ -211,8 +211,8 @@ class SharedSettings(NodeSettings):
     share: bool = Field(
         False,
         description=(
-            "share the sensors with all other processes of this service that have this flag: each sensor is served by "
-            "one of these processes, and by another one within 2 s after that process has ended"
+            "share the sensors with all other processes of this service that have this flag: one process at a time "
+            "serves a sensor. If this process ends, another one takes over within 2 s"
         ),
     )
 

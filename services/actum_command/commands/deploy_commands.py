@@ -47,9 +47,9 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
             metavar="NAME=ADDRESS,…",
             help=(
                 "names and addresses of the hosts, such as camera=192.168.1.5,compute=192.168.1.6. A host whose name "
-                "begins with camera runs a camera and the marker tracker; one whose name begins with compute runs the "
-                "other services, which serve all sensors of that host together, and a web page for each sensor. Name "
-                "further hosts camera2, compute2. If the router of a host uses another port than 7447, append :PORT to "
+                "begins with camera runs a camera and the marker tracker. A host whose name begins with compute runs a "
+                "web page for each of its sensors, and one of each other service for all its sensors. Name further "
+                "hosts camera2, compute2. If the router of a host uses another port than 7447, append :PORT to "
                 "the address"
             ),
         ),

@@ -133,7 +133,7 @@ def up(
 
     With --sensors left,right, each sensor has its own source and web page; every other service serves both sensors.
     Give a setting of the source or page once for all sensors, or once for each sensor in their order: --camera 0
-    --camera 2. Each simulated scene has another --seed.
+    --camera 2. Simulated scenes get different seeds.
     """
     here = settings(NodeSettings)
     if here.credentials is not None:
