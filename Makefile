@@ -155,7 +155,7 @@ bench-paper: $(STAMP)  ## preset paper by the paper's own protocols, step by ste
 bench-page: $(STAMP)  ## what the page costs with several browsers, some minutes; needs Chromium
 	$(BIN)/python -m benchmarks.page_cost
 
-bench-ros4hri: $(STAMP)  ## ROS4HRI: what its topics cost, how rightly postures are told, and answers to bodies that came back, three minutes
+bench-ros4hri: $(STAMP)  ## ROS4HRI: what its topics cost, how rightly postures are told, and answers to bodies that came back, five minutes
 	@test -d "$$ACTUM_DATA" || { echo "bench-ros4hri needs ACTUM_DATA: the folder that holds msr_action3d/" >&2; exit 1; }
 	$(BIN)/python -m benchmarks.ros4hri
 

@@ -1,12 +1,15 @@
-"""What ROS4HRI costs in accuracy: MSR Action3D's test people as bodies of ROS 2 and back, answered as before.
+"""What ROS4HRI costs in accuracy: people of MSR Action3D as bodies of ROS 2 and back, answered as before.
 
-A model of the people with odd numbers answers each sequence of those with even numbers: as it was recorded; and
-published by the bridge as ROS4HRI's bodies and read again by another. What goes over, as bytes, are the frames of the
-joints on /tf; those alone that human_description has, which lacks the middle of the trunk; or joint_states, the angles
-of human_description's joints, whose bones have lengths of their own and whose shoulders keep still. All else is the
-code that runs live.
+A model of other people answers each sequence as it was recorded; and published by the bridge as ROS4HRI's bodies and
+read again by another. Whoever changes a way back chooses it by the people with odd numbers, each of whom is answered by
+a model of the others; those with even numbers, answered by a model of all the odd ones, are for the test.
+
+What goes over, as bytes, are the frames of the joints on /tf; those alone that human_description has, which lacks the
+middle of the trunk; or joint_states, the angles of human_description's joints, whose bones have lengths of their own
+and whose shoulders keep still. All else is the code that runs live.
 """
 
+from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
@@ -23,7 +26,6 @@ from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
 from ros2_bridge.bridge import Ros2Bridge
-from ros2_bridge.hri_in.human_model import SPINE
 from ros2_bridge.message_types import TF_MESSAGE, from_cdr, made, to_cdr
 from ros2_bridge.settings import Settings, TopicName
 from som_classifier.model import Model
@@ -37,6 +39,10 @@ READ = ("/tf", "/humans/bodies/tracked")
 """The topics that go over, those of joint angles beside them."""
 ALL, OF_THE_MODEL, ANGLES = "frames on /tf", "of human_description alone", "joint_states"
 """The ways that skeletons take."""
+PLAIN = "as recorded"
+"""No way at all."""
+Split = tuple[Sequence[Recording], Sequence[Recording]]
+"""The recordings that a model learns, and those that it answers."""
 Answers = dict[str, tuple[str, str]]
 """What was answered and what is right, by the name of the sequence."""
 
@@ -83,7 +89,7 @@ def _without_trunk(put: Foreign) -> Foreign:
     if put.topic != "/tf":
         return put
     transforms = from_cdr(put.payload, TF_MESSAGE).transforms
-    kept = [each for each in transforms if not each.child_frame_id.startswith(f"{SPINE}_")]
+    kept = [each for each in transforms if not each.child_frame_id.startswith("spine_")]
     return Foreign(put.topic, to_cdr(made(TF_MESSAGE, transforms=kept)))
 
 
@@ -108,15 +114,32 @@ def of_round_trip(data: ImportedSets) -> Iterator[str]:
     """Yield a line for each way, with how often it is right and how often it says what is said without it."""
     recordings = data.recordings("msr_action3d", import_msr_action3d)
     odd, even = ([each for each in recordings if int(each.person) % 2 == rest] for rest in (1, 0))
-    model = train(samples_from(odd).usable, DEFAULT, SEED)
-    plain = answers(model, even)
-    yield f"{'as recorded':<27}{_right(plain, plain)}"
-    for way in (ALL, OF_THE_MODEL, ANGLES):
-        found = answers(model, [ThroughRos(each.path, way) for each in even])
-        same = sum(found.get(name, ("",))[0] == label for name, (label, _) in plain.items())
-        yield f"{way:<27}{_right(found, plain)}; the same answer to {same} ({100 * same / len(plain):.1f} %)"
+    people = sorted({each.person for each in odd})
+    yield "MSR Action3D's odd people, each left out in turn:"
+    yield from _compared([_parted(odd, person) for person in people])
+    yield "its even people, by a model of the odd ones:"
+    yield from _compared([(odd, even)])
 
 
-def _right(found: Answers, of: Answers) -> str:
-    right = sum(label == wanted for label, wanted in found.values())
-    return f"right about {right} of {len(of)} sequences ({100 * right / len(of):.1f} %)"
+def _parted(recordings: Sequence[Recording], person: str) -> Split:
+    """Return the recordings of all others, and those of a person."""
+    others = [each for each in recordings if each.person != person]
+    return others, [each for each in recordings if each.person == person]
+
+
+def _compared(splits: Sequence[Split]) -> Iterator[str]:
+    """Yield a line for each way, from models of each split's first recordings and their answers to the second."""
+    found: defaultdict[str, Answers] = defaultdict(dict)
+    for learnt, tested in splits:
+        model = train(samples_from(learnt).usable, DEFAULT, SEED)
+        found[PLAIN] |= answers(model, tested)
+        for way in (ALL, OF_THE_MODEL, ANGLES):
+            found[way] |= answers(model, [ThroughRos(each.path, way) for each in tested])
+    plain = found[PLAIN]
+    for way, given in found.items():
+        right = sum(label == wanted for label, wanted in given.values())
+        same = sum(given.get(name, ("",))[0] == label for name, (label, _) in plain.items())
+        yield (
+            f"  {way:<27}right about {right} of {len(plain)} sequences ({100 * right / len(plain):.1f} %); the same "
+            f"answer to {same} ({100 * same / len(plain):.1f} %)"
+        )

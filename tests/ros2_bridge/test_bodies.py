@@ -37,7 +37,7 @@ from ros2_bodies import (
 from ros2_bridge import topics
 from ros2_bridge.bridge import Ros2Bridge
 from ros2_bridge.hri_in.body_reader import LONGEST_NAME
-from ros2_bridge.hri_in.human_model import FOREARM_M, LINKS, TORSO_M, UPPER_ARM_M
+from ros2_bridge.hri_in.human_model import FOREARM_M, LINKS, NECK_M, TORSO_M, UPPER_ARM_M
 from ros2_bridge.hri_in.transform_tree import HISTORY, MOST_FRAMES
 from ros2_bridge.settings import Settings
 
@@ -46,6 +46,8 @@ UPRIGHT = {link.joint: 0.0 for link in LINKS if link.joint is not None}
 """The angles (rad) of a body that stands."""
 BESIDE = STANDING + np.array([1, 0, 0])
 """Another person, a metre to the right."""
+LEANING = STANDING - np.array([[0, 0, 0.3]]) * (STANDING[:, 1:2] < STANDING[INDEX["torso"], 1])
+"""The same with head, neck, shoulders and whatever else is above the torso 0.3 m ahead."""
 OURS = {name: name for name in JOINTS}
 """Names as OpenNI's trackers have them."""
 HALF_TURN = math.sqrt(0.5)
@@ -120,8 +122,9 @@ def test_only_the_first_frame_of_a_body_waits_for_more() -> None:
         OURS,
         {**OURS, **{f"{joint}_{side}": f"{side}_{joint}" for side in ("left", "right") for joint in ("hand", "hip")}},
         {**MODEL_FRAMES, "spine_mid": "torso"},
+        {**MODEL_FRAMES, "spine_mid": "torso", "r_head": "neck", "torso": "left_shoulder"},
     ],
-    ids=["openni", "kinect", "human_description"],
+    ids=["openni", "kinect", "human_description", "all links of human_description"],
 )
 def test_joints_are_known_by_the_names_of_several_trackers(names: dict[str, str]) -> None:
     made = bridge()
@@ -130,6 +133,20 @@ def test_joints_are_known_by_the_names_of_several_trackers(names: dict[str, str]
         for each in (tracked(stamp_ns, "7"), tf(*frames(stamp_ns, STANDING, "7", names)))
     ))  # fmt: skip
     np.testing.assert_allclose(joints(found[-1]), STANDING, atol=1e-9)
+
+
+def test_without_a_frame_of_its_own_the_torso_is_above_the_hips_along_the_bodys_z() -> None:
+    made = bridge()
+    hips = STANDING[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0)
+    found = given_to(made, (
+        each for stamp_ns in stamps(5)
+        for each in (
+            tracked(stamp_ns, "ab"),
+            tf(transform(stamp_ns, "body_ab", hips, UPRIGHT_IN_OPTICAL), *frames(stamp_ns, LEANING, "ab")),
+        )
+    ))  # fmt: skip
+    half_m = np.linalg.norm(LEANING[INDEX["neck"]] - hips) / 2
+    assert joints(found[-1])[INDEX["torso"]] == pytest.approx(hips - [0, half_m, 0])
 
 
 def test_links_are_followed_through_the_tree_of_the_body_and_through_that_of_the_robot() -> None:
@@ -182,8 +199,8 @@ def test_joint_states_become_joints_by_the_human_model() -> None:
     ))  # fmt: skip
     seen = joints(found[-1]) - [0.5, 0.2, 2.0]
     assert not np.isnan(seen).any()
-    assert seen[INDEX["neck"]] == pytest.approx([0, -TORSO_M, 0])
-    assert seen[INDEX["torso"]] == pytest.approx([0, -TORSO_M / 2, 0])
+    assert seen[INDEX["neck"]] == pytest.approx([0, -TORSO_M - NECK_M, 0])
+    assert seen[INDEX["torso"]] == pytest.approx([0, -(TORSO_M + NECK_M) / 2, 0])
     assert np.linalg.norm(seen[INDEX["right_elbow"]] - seen[INDEX["right_shoulder"]]) == pytest.approx(UPPER_ARM_M)
     assert seen[INDEX["right_hand"]] - seen[INDEX["right_elbow"]] == pytest.approx([FOREARM_M, 0, 0])
 

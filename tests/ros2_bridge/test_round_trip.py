@@ -19,8 +19,11 @@ from ros2_bridge.bridge import Ros2Bridge
 from ros2_bridge.settings import Settings, TopicName
 
 FRAME = "camera_optical_frame"
-LIMBS = [(parent, child) for parent, child, _ in BONES if not {INDEX["torso"], INDEX["neck"]} & {parent, child}]
-"""Arms and legs: the bones that are links of the human model."""
+LIMBS = [
+    *((parent, child) for parent, child, _ in BONES if not {INDEX["torso"], INDEX["neck"]} & {parent, child}),
+    (INDEX["neck"], INDEX["head"]),
+]
+"""Arms, legs and head: the bones that the human model's angles turn."""
 STRAIGHT = np.sin(np.radians(10))
 """A knee that is bent by less is published as straight."""
 LEANING = STANDING + np.array(
@@ -77,6 +80,15 @@ def test_by_angles_every_limb_points_where_it_did(joints: np.ndarray) -> None:
     off = np.abs(directions(there_and_back(joints, "tf", "bodies")) - directions(joints)).max(axis=1)
     shanks = [child in (INDEX["left_foot"], INDEX["right_foot"]) for _, child in LIMBS]
     assert (off < np.where(shanks, STRAIGHT, 1e-6)).all(), off
+
+
+def test_by_angles_a_straight_arm_keeps_its_hand() -> None:
+    straight = STANDING.copy()
+    shoulder, elbow = straight[INDEX["left_shoulder"]], straight[INDEX["left_elbow"]]
+    straight[INDEX["left_hand"]] = elbow + (elbow - shoulder)
+    np.testing.assert_allclose(
+        directions(there_and_back(straight, "tf", "bodies"))[:2], directions(straight)[:2], atol=1e-6
+    )
 
 
 def test_by_angles_a_trunk_that_is_bent_stays_so() -> None:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from ros2_bridge.hri_in.body_joints import BODY, joints_of
 from ros2_bridge.hri_in.human_model import JOINTS, link_places
+from ros2_bridge.hri_in.placements import Placement
 from ros2_bridge.hri_in.transform_tree import HISTORY, TransformTree
 from ros2_bridge.rotations import Point
 
@@ -59,14 +60,14 @@ class Body:
         """
 
         def framed(name: str) -> Point | None:
-            frame = f"{name}{self._suffix}"
-            if not tree.knows(frame):
-                return None
-            placed = tree.placement(frame, self._optical_frame, stamp_ns, exactly=self._suffix)
+            placed = self._placed(name, tree, stamp_ns)
             return None if placed is None else placed.position_m
 
-        found = Found(joints_of(framed), by_frames=True)
-        return found if found.known else self._modelled(tree, stamp_ns)
+        body = self._placed(BODY, tree, stamp_ns)
+        found = Found(joints_of(framed, body), by_frames=True)
+        if found.known or body is None:
+            return found if found.known else None
+        return self._modelled(body, stamp_ns)
 
     def is_whole(self, found: Found | None) -> bool:
         """Tell whether no more is to be waited for: the joints of the last skeleton are there, from the same source."""
@@ -81,13 +82,17 @@ class Body:
         if found is not None:
             self._last, self.has_3d = found, True
 
-    def _modelled(self, tree: TransformTree, stamp_ns: int) -> Found | None:
+    def _placed(self, name: str, tree: TransformTree, stamp_ns: int) -> Placement | None:
+        """Return where a frame of the body lies in the camera's at an instant; None where that is not known."""
+        frame = f"{name}{self._suffix}"
+        if not tree.knows(frame):
+            return None
+        return tree.placement(frame, self._optical_frame, stamp_ns, exactly=self._suffix)
+
+    def _modelled(self, body: Placement, stamp_ns: int) -> Found | None:
         angles_rad = self._angles_rad.get(stamp_ns)
         if angles_rad is None:
             return None
-        body = tree.placement(f"{BODY}{self._suffix}", self._optical_frame, stamp_ns, exactly=self._suffix)
-        if body is None:
-            return None
         places = {name: body.at(place) for name, place in link_places(angles_rad).items()}
-        found = Found(joints_of(places.get), by_frames=False)
+        found = Found(joints_of(places.get, body), by_frames=False)
         return found if found.known else None

@@ -1,8 +1,10 @@
 """Which frames of a body are our fifteen joints: the names of ROS4HRI's human model, and those of other trackers."""
 
+import math
 from collections.abc import Callable, Mapping
 
 from actum.skeletons import JOINTS
+from ros2_bridge.hri_in.placements import Placement
 from ros2_bridge.rotations import Point
 
 Places = Callable[[str], Point | None]
@@ -34,24 +36,29 @@ NAMES: Mapping[str, tuple[str, ...]] = {
 `wrist_left` Kinect's. A wrist stands for a hand where there is none: human_description has no hands."""
 MODEL_SHOULDERS = "torso"
 """The frame of human_description in the middle of the shoulders. OpenNI calls the middle of the trunk so, and the
-middle of the shoulders `neck`, which human_description lacks."""
+joint above it `neck`, which human_description lacks."""
+MODEL_NECK = "r_head"
+"""The frame of human_description at the lower end of the head: as far as OpenNI's neck above the shoulders' line."""
 BODY = "body"
 """The frame of human_description in the middle of the hips."""
 
 
-def joints_of(places: Places) -> list[Point | None]:
+def joints_of(places: Places, body: Placement | None) -> list[Point | None]:
     """Return the joints (m) in our order, None where none of the joint's names has a place.
 
-    The torso, where it has no frame, is the middle between the hips and the neck.
+    The torso, where it has no frame, is half as far above the hips as the neck is from them: along the z axis of the
+    body, whose frame is `body`; towards the neck where that frame is unknown.
     """
     found = {joint: _first(places, names) for joint, names in NAMES.items()}
     if found["neck"] is None:
-        found["neck"] = places(MODEL_SHOULDERS)
+        found["neck"] = places(MODEL_NECK) or places(MODEL_SHOULDERS)
     elif found["torso"] is None:
         found["torso"] = places(MODEL_SHOULDERS)
-    if found["torso"] is None:
-        hips = _middle(found["left_hip"], found["right_hip"]) or places(BODY)
-        found["torso"] = _middle(hips, found["neck"])
+    hips = _middle(found["left_hip"], found["right_hip"]) or (body and body.position_m)
+    neck = found["neck"]
+    if found["torso"] is None and hips is not None and neck is not None:
+        half_m = math.dist(hips, neck) / 2
+        found["torso"] = _middle(hips, neck) if body is None else Placement(hips, body.xyzw).at((0.0, 0.0, half_m))
     return [found[joint] for joint in JOINTS]
 
 

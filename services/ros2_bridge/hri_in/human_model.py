@@ -2,7 +2,8 @@
 
 The links and joints, their axes and proportions are those of `urdf/human-tpl.xacro` in the package human_description
 1.0.1 (github.com/ros4hri/human_description, commit a0fcf79f, BSD licence, Copyright 2022 PAL Robotics). The frame of
-the body lies between the hips: x forward, y left, z to the head.
+the body lies between the hips: x forward, y left, z to the head. One link differs: `head` is the middle of the sphere
+that the model draws, from which the model's link lies 5 cm ahead.
 """
 
 import math
@@ -17,7 +18,7 @@ HEIGHT_M = 1.65
 _UNIT_M = HEIGHT_M / 7.5
 """The height of the model's head (m), of which its lengths are multiples."""
 HEAD_RADIUS_M = _UNIT_M / 2
-"""Half the height of the head (m)."""
+"""From the lower end of the head to its middle (m)."""
 NECK_M = _UNIT_M * 0.25
 """From the line of the shoulders to the lower end of the head (m)."""
 NECK_TO_SHOULDER_M = _UNIT_M * 0.8
@@ -34,10 +35,6 @@ THIGH_M = _UNIT_M * 1.5
 """From the hip to the knee (m)."""
 SHANK_M = _UNIT_M * 2
 """From the knee to the ankle (m)."""
-
-
-SPINE = "spine"
-"""The name of the middle of the trunk, as the bridge's own frames have it."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +75,7 @@ LINKS: tuple[Link, ...] = (
     Link("r_head", "torso", (0, 0, NECK_M), "r_head", (1, 0, 0)),
     Link("y_head", "r_head", (0, 0, 0), "y_head", (0, 0, 1)),
     Link("p_head", "y_head", (0, 0, 0), "p_head", (0, -1, 0)),
-    Link("head", "p_head", (HEAD_RADIUS_M / 2, 0, HEAD_RADIUS_M)),
+    Link("head", "p_head", (0, 0, HEAD_RADIUS_M)),
     *_arm("l", 1),
     *_arm("r", -1),
     *_leg("l", 1),
@@ -87,26 +84,26 @@ LINKS: tuple[Link, ...] = (
 """The links in an order in which parents come first; the body is their root."""
 JOINTS = frozenset(link.joint for link in LINKS if link.joint is not None)
 """The names of the model's joints."""
+TWISTS = frozenset(("y_head", "l_r_shoulder", "r_r_shoulder"))
+"""Joints that count as 0 where they are unknown. Trackers that do not see where somebody looks measure how the head is
+tilted as if it were ahead; and an arm's twist cannot be seen only while the arm is straight, when it moves no hand."""
 
 
 def link_places(angles_rad: Mapping[str, float]) -> dict[str, Point]:
     """Return where links begin (m) in the body's frame, by their name; what no angles determine is left out.
 
-    The middle of the trunk is among them, which is no link: it is on the body's z, by which the bridge places bodies.
-
     Args:
         angles_rad: the angle of each joint, by its name without the body's id; NaN where it is unknown.
     """
-    placed, twisted = {"body": Placement()}, dict[str, Placement]()
-    places = {"body": (0.0, 0.0, 0.0), SPINE: (0.0, 0.0, TORSO_M / 2)}
+    placed = {"body": Placement()}
+    places = {"body": (0.0, 0.0, 0.0)}
     for link in LINKS:
-        angle_rad = 0.0 if link.joint is None else angles_rad.get(link.joint, math.nan)
-        parent = placed.get(link.parent) or (twisted.get(link.parent) if link.origin_m[:2] == (0, 0) else None)
-        if parent is None:
+        if link.parent not in placed:
             continue
-        places[link.name] = parent.at(link.origin_m)
-        if link.parent in placed and math.isfinite(angle_rad):
-            placed[link.name] = parent.of(Placement(link.origin_m, about(link.axis, angle_rad)))
-        elif link.parent in placed and link.axis[:2] == (0, 0):  # an unknown twist about z leaves the end of a limb
-            twisted[link.name] = parent.of(Placement(link.origin_m))
+        places[link.name] = placed[link.parent].at(link.origin_m)
+        angle_rad = 0.0 if link.joint is None else angles_rad.get(link.joint, math.nan)
+        if link.joint in TWISTS and not math.isfinite(angle_rad):
+            angle_rad = 0.0
+        if math.isfinite(angle_rad):
+            placed[link.name] = placed[link.parent].of(Placement(link.origin_m, about(link.axis, angle_rad)))
     return places
