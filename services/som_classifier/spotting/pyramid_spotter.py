@@ -98,7 +98,8 @@ class PyramidSpotter(Spotter):
         self._interval_ns = round(metadata.interval_s * SECOND_NS)
         longest_ns = round(metadata.window_durations_s[-1] * SECOND_NS)
         self._decoder = learned.decoder()
-        self._recent = RecentFrames(metadata.window_durations_s, self._decoder.memory_ns + longest_ns)
+        self.memory_ns = self._decoder.memory_ns + longest_ns
+        self._recent = RecentFrames(metadata.window_durations_s, self.memory_ns)
         self._next_decision_ns = 0
         self._ongoing: Ongoing | None = None
 
