@@ -74,7 +74,7 @@ class KinematicsFilter:
         self._state = np.stack([np.zeros(joints.shape), self._before, self._before])
 
     def _advanced(self, joints: Array, elapsed_s: float) -> Kinematics | None:
-        """Advance the state and return the kinematics of the next frame; None, and no change, where a joint is missing."""
+        """Advance the state, and return the next frame's kinematics; None and no change where a joint is missing."""
         if steps is None:
             return None if np.isnan(joints[:, 0]).any() else self._advanced_in_numpy(joints, elapsed_s)
         kinematics = np.empty((2, *joints.shape))
