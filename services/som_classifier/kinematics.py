@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Mask
+from actum.arrays import Array, Mask, has_unknown
 from actum.core import steps
 from actum.node import SECOND_NS
 
@@ -76,7 +76,7 @@ class KinematicsFilter:
     def _advanced(self, joints: Array, elapsed_s: float) -> Kinematics | None:
         """Advance the state, and return the next frame's kinematics; None and no change where a joint is missing."""
         if steps is None:
-            return None if np.isnan(joints[:, 0]).any() else self._advanced_in_numpy(joints, elapsed_s)
+            return None if has_unknown(joints[:, 0]) else self._advanced_in_numpy(joints, elapsed_s)
         kinematics = np.empty((2, *joints.shape))
         gain, decay = 1 - math.exp(-elapsed_s / SPEED_TIME_CONSTANT_S), math.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
         known = steps.smoothed(
