@@ -95,7 +95,7 @@ check: docs  ## format, lint, types, layers, pages
 	$(BIN)/mypy --no-error-summary
 	$(BIN)/lint-imports --no-cache > /dev/null || $(BIN)/lint-imports
 
-bench: $(STAMP)  ## latency beside a bare Zenoh chain and behind a secured router, and throughput
+bench: $(STAMP)  ## latency beside a bare Zenoh chain and behind a secured router, memory, and throughput; six minutes
 	$(BIN)/python -m benchmarks.latency
 
 COMMIT ?= HEAD

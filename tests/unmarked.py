@@ -150,4 +150,5 @@ def encoded_live(model: Model, of: Scene, lost: frozenset[int] = frozenset()) ->
     segmenter = Segmenter(Counters())
     segmenter.streams.use(lambda: model.encoder().encode)
     kept = [each for i, each in enumerate(of.skeletons()) if i not in lost]
-    return [frame for each in postures(kept) if (frame := segmenter.posture(each)[0]) is not None]
+    frames = (segmenter.posture(each)[0] for each in postures(kept))
+    return [replace(frame) for frame in frames if frame is not None]  # the classifier's own forget their activity

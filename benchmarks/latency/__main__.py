@@ -1,11 +1,12 @@
-"""Latency per hop at the sensor's pace beside a bare Zenoh chain, behind security, and throughput (make bench).
+"""Latency per hop at the sensor's pace beside a bare Zenoh chain, behind security, memory, throughput (make bench).
 
 Prints the tables, and writes them to results.md with the commit.
 
 Router, preprocessor, classifier and fusion run as processes. This program puts the simulated scene's skeletons at 30
 frames/s with objects at 15 a second, 40 ms late as a tracker's are, and marks; halfway between two frames it puts a
 payload of the same size into a chain of as many bare relays. All times are taken by this process's clock. The same
-scene then goes through a router that asks for certificates and passwords, and allows each what its role may do.
+scene then goes through a router that asks for certificates and passwords, and allows each what its role may do. The
+memory is that of another run, for a minute.
 """
 
 import os
@@ -15,6 +16,7 @@ from pathlib import Path
 
 from benchmarks.latency import running, stopwatch
 from benchmarks.latency.decision import OBJECTS_EACH, PEOPLE, decisions_ms, inputs
+from benchmarks.latency.memory import resident, resident_mb
 from benchmarks.latency.people import load
 from benchmarks.latency.scene import payload_sizes, stream
 from benchmarks.rig.numpy_alone import numpy_alone
@@ -56,10 +58,12 @@ def main() -> None:
         sizes = payload_sizes(model)
         plain = running.beside_bare_chain(folder, sizes).took_ms
         secured = running.behind_security(folder).took_ms
+        memory = resident_mb(folder)
     frames, segments = len(plain["bench/frame/2"]), len(plain["mark event"])
     console.print(f"{frames} frames at 30/s, {segments} actions; payloads in bytes: {sizes}")
     console.print(stopwatch.beside_bare(plain))
     console.print(stopwatch.behind_security(secured, plain))
+    console.print(resident(memory))
     print_costs(console, model)
     PAGE.write_text(HEADER.format(commit()) + f"\n```text\n{console.export_text()}```\n")
 

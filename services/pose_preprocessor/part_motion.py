@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from actum.arrays import Array
+from actum.arrays import Array, has_unknown
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX, PARTS
 
@@ -59,7 +59,7 @@ class PartMotionFilter:
             return [0.0] * len(PARTS)
         by = gain * (relative - self.smooth)
         lengths = np.sqrt(np.einsum("ij,ij->i", by, by))
-        if math.isnan(lengths.sum()):
+        if has_unknown(lengths):
             self.smooth = np.where(np.isnan(by), relative, self.smooth + by)
             known = ~np.isnan(lengths)
             motion = _IN_PART @ np.where(known, lengths, 0.0) / np.maximum(_IN_PART @ known, 1.0)

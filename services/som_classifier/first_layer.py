@@ -1,6 +1,5 @@
 """The first layer of the default recogniser: maps of postures, velocities and arms, each with a soft activity."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Floats
+from actum.arrays import Floats, has_unknown
 from actum.core import steps
 from actum.skeletons import INDEX, JOINTS
 from actum.som import Som, Together
@@ -166,7 +165,7 @@ class FirstMaps:
         """
         error = postures.reshape(-1, _SIZE) - self.postures.weights[winners]
         mean2 = np.square(error).sum(axis=1) / _SIZE
-        if np.isnan(mean2).any():
+        if has_unknown(mean2):
             known = ~np.isnan(error)
             mean2 = np.square(np.where(known, error, 0.0)).sum(axis=1) / np.maximum(known.sum(axis=1), 1)
         errors: Floats = np.log(np.maximum(mean2 * _SIZE, SMALLEST_ERROR2))
@@ -183,7 +182,7 @@ class FirstMaps:
         """
         row = np.concatenate([posture, velocity]).ravel()
         rows = np.array([row, mirrored_inputs(row)])
-        if math.isnan(row.sum()):
+        if has_unknown(row):
             excess2s = self._partly_known(rows)
         else:
             excess2s = self._together.excess2s(np.concatenate([each(rows) for each in MAP_INPUTS.values()], axis=1))

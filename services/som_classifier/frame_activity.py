@@ -142,14 +142,12 @@ class FrameEncoder:
 
 def segment_sums(frames: Sequence[FrameActivity], in_mirror: bool) -> PrefixSums:
     """Return a segment's prefix sums of activity, of the actor as seen or mirrored."""
-    side, sums, totals = int(in_mirror), [frames[0].before[None]], [frames[0].totals_before[None]]
+    side, totals = int(in_mirror), [frames[0].totals_before[None]]
     for _, together in groupby(frames, key=lambda frame: id(frame.run)):
         (run, row, _), *others = together
-        rows = slice(row + 1, row + 2 + len(others))
-        sums.append(run.sums[rows])
-        totals.append(run.totals[rows])
+        totals.append(run.totals[row + 1 : row + 2 + len(others)])
     travelled_um: NDArray[np.int64] = np.concatenate(totals)[:, _PARTS].sum(axis=1)
-    return PrefixSums(np.concatenate([each[:, side] for each in sums]), travelled_um)
+    return PrefixSums([frames[0].before[side], *[run.sums[row + 1, side] for run, row, _ in frames]], travelled_um)
 
 
 def pooled_windows(

@@ -33,7 +33,7 @@ class Frame:
         kinematics: smoothed positions and velocities in the upright frame.
         missing: the joints that are NaN in `kinematics`.
         depth_inferred: whether distances were inferred from an image and a standard body's size.
-        activity: the encoder's result for this frame, of a type that the model defines.
+        activity: the encoder's result for this frame, of a type that the model defines; None where it was forgotten.
         reason: why the preprocessor could not use the frame; None where it could.
         upright: (15, 3), scaled joints in the upright frame as measured, before `kinematics` smooths them.
     """

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Mask
+from actum.arrays import Mask, has_unknown
 from actum.core import steps
 from actum.messages import Hand
 from actum.skeletons import INDEX, JOINTS
@@ -69,9 +69,8 @@ def limb_moments(posture: NDArray[np.float64]) -> Integers:
     np.rint(posture.reshape(*posture.shape[:-2], -1)[..., COMPONENTS] * _UNITS_PER_M, out=limbs)
     np.einsum("...ij,...ij->...i", limbs, limbs, out=result[..., 6])
     result[..., 7] = 1.0
-    missing = np.isnan(result[..., 6])
-    if missing.any():
-        result[missing] = 0.0
+    if has_unknown(result[..., 6]):
+        result[np.isnan(result[..., 6])] = 0.0
     return result.astype(np.int64)
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Array, Mask
+from actum.arrays import Array, Mask, has_unknown
 from actum.core import steps
 from actum.node import SECOND_NS
 
@@ -46,7 +46,7 @@ class KinematicsFilter:
         self._stamp_ns: int | None = None
         self._known: Mask | None = None  # None where all are
         self._before = np.zeros((0, 3))
-        self._state = np.zeros((3, 0, 3))
+        self._state = np.zeros((3, 0, 3))  # speeds, smooth and lagging positions
 
     def step(self, stamp_ns: int, joints: Array) -> Kinematics:
         """Receive the next frame's joints and return their kinematics.
@@ -64,8 +64,8 @@ class KinematicsFilter:
         advanced = self._advanced(joints, elapsed_s) if self._known is None else None
         if advanced is None:
             return self._advance_known(joints, ~np.isnan(joints[:, 0]), elapsed_s)
-        self._before, self._state = joints, advanced[:3]
-        return Kinematics(advanced[1], advanced[3])
+        self._before = joints
+        return advanced
 
     def _restart(self, joints: Array) -> None:
         known = ~np.isnan(joints[:, 0])
@@ -73,36 +73,31 @@ class KinematicsFilter:
         self._before = np.nan_to_num(joints)
         self._state = np.stack([np.zeros(joints.shape), self._before, self._before])
 
-    def _advanced(self, joints: Array, elapsed_s: float) -> Array | None:
-        """Return speeds, smooth and lagging positions, and velocities of the next frame, (4, 15, 3).
-
-        Return None where a joint is missing.
-        """
+    def _advanced(self, joints: Array, elapsed_s: float) -> Kinematics | None:
+        """Advance the state, and return the next frame's kinematics; None and no change where a joint is missing."""
         if steps is None:
-            return None if np.isnan(joints[:, 0]).any() else self._advanced_in_numpy(joints, elapsed_s)
-        advanced = np.empty((4, *joints.shape))
+            return None if has_unknown(joints[:, 0]) else self._advanced_in_numpy(joints, elapsed_s)
+        kinematics = np.empty((2, *joints.shape))
         gain, decay = 1 - math.exp(-elapsed_s / SPEED_TIME_CONSTANT_S), math.exp(-elapsed_s / LAG_TIME_CONSTANT_S)
         known = steps.smoothed(
             joints, self._before, self._state, elapsed_s, gain, STILL_TIME_CONSTANT_S, STILL_SPEED_MPS,
-            LAG_TIME_CONSTANT_S, decay, advanced,
+            LAG_TIME_CONSTANT_S, decay, kinematics,
         )  # fmt: skip
-        return advanced if known else None
+        return Kinematics(*kinematics) if known else None
 
-    def _advanced_in_numpy(self, joints: Array, elapsed_s: float) -> Array:
+    def _advanced_in_numpy(self, joints: Array, elapsed_s: float) -> Kinematics:
         speed, smooth, lagging = self._state
-        advanced = np.empty((4, *joints.shape))
         velocity = (joints - self._before) / elapsed_s
         velocity -= speed
         velocity *= 1 - math.exp(-elapsed_s / SPEED_TIME_CONSTANT_S)
-        np.add(speed, velocity, out=advanced[0])
-        speeds = np.sqrt(np.einsum("ij,ij->i", advanced[0], advanced[0]))
+        speed += velocity
+        speeds = np.sqrt(np.einsum("ij,ij->i", speed, speed))
         gains = 1 - np.exp(elapsed_s / -STILL_TIME_CONSTANT_S * (1 + speeds / STILL_SPEED_MPS))
         step = joints - smooth
         step *= gains[:, None]
-        np.add(smooth, step, out=advanced[1])
-        advanced[2] = _lagged(lagging, smooth, step, elapsed_s)
-        np.subtract(advanced[1], advanced[2], out=advanced[3])
-        return advanced
+        lagging[:] = _lagged(lagging, smooth, step, elapsed_s)
+        smooth += step
+        return Kinematics(smooth.copy(), smooth - lagging)
 
     def _advance_known(self, joints: Array, known: Mask, elapsed_s: float) -> Kinematics:
         """Advance while joints are missing: their state is kept, and the filters of those that come back restart."""
@@ -115,9 +110,9 @@ class KinematicsFilter:
         self._known = None if known.all() else known
         advanced = self._advanced(present, elapsed_s)
         assert advanced is not None
-        self._before, self._state = present, advanced[:3]
+        self._before = present
         missing = np.where(known, 0.0, np.nan)[:, None]
-        return Kinematics(advanced[1] + missing, advanced[3] + missing)
+        return Kinematics(advanced.posture + missing, advanced.velocity + missing)
 
 
 def _lagged(lagging: Array, start: Array, step: Array, elapsed_s: float) -> Array:

@@ -99,7 +99,10 @@ class ModelMetadata(BaseModel):
 
 
 class Encoder(Protocol):
-    """Computes the activity of a model's first layer, for one agent's frames in order."""
+    """Computes the activity of a model's first layer, for one agent's frames in order, from any of them on.
+
+    What a segment is called must not depend on where the encoder began.
+    """
 
     def encode(self, frame: Frame) -> Any:
         """Return the first layer's activity for a valid frame, to be kept as `Frame.activity`."""

@@ -22,7 +22,7 @@ from som_classifier.segments import ClosedSegment, OpenSegment
 from som_classifier.settings import Settings
 from som_classifier.spotting.search import Search
 from som_classifier.spotting.spotted import Ongoing, SpottedSegment
-from som_classifier.streams import Stream
+from som_classifier.stream import Stream
 
 Fate = WhyHeldBack | Literal["told", "marked"]
 """What becomes of a segment that was found: published, answered by its mark, or held back."""

@@ -1,92 +1,20 @@
-"""Each agent's frames in order, kept for as long as the longest segment reaches back, and which of them are lost."""
+"""The streams of all agents, and which of their frames are lost."""
 
 from collections.abc import Callable
 from itertools import pairwise
-from typing import Any
 
-from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS, MOST_FRAMES, MOST_STREAMS
-from actum.losses import StreamBuffer, longest_loss_s
+from actum.limits import MAX_SKEW_NS, MOST_FRAMES, MOST_STREAMS
+from actum.losses import longest_loss_s
 from actum.messages import Posture
 from actum.node import SECOND_NS, Counters
-from actum.stamps import LostFrames, Order, StampGuard
-from som_classifier.frames import Frame, Stretch, frame_of
-from som_classifier.kinematics import KinematicsFilter
+from actum.stamps import Order
+from som_classifier.frames import Frame
 from som_classifier.open_segments import FAR_FUTURE_NS
-from som_classifier.segments import ClosedSegment, OpenSegment, with_cause
 from som_classifier.spotting.search import NO_SEARCH, Search, SearchPlan
-
-Encode = Callable[[Frame], Any]
-"""Returns what a model needs of a valid frame; called with one agent's frames in order."""
-
-MEMORY_NS = MAX_SEGMENT_NS + MAX_SKEW_NS
-"""Frames are kept for this long (ns), so that a segment of any length is whole when its late end mark comes."""
+from som_classifier.stream import MEMORY_NS, Encode, Stream
 
 BEFORE_NS = SECOND_NS
 """How long before a segment frames are looked at (ns): the one before it tells whether the next one follows it."""
-
-
-class Stream(StreamBuffer[Frame]):
-    """One agent's frames, stamps rising.
-
-    Attributes:
-        search: finds the actions in it that nobody marked.
-    """
-
-    def __init__(self, encode: Encode | None, search: Search) -> None:
-        super().__init__(MEMORY_NS)
-        self.search = search
-        self._guard = StampGuard()
-        self._lost = LostFrames()
-        self._smoothing = KinematicsFilter()
-        self._encode = encode
-        self._flawed_ns = -1
-
-    def use(self, encode: Encode) -> None:
-        """Encode all frames, those kept and those to come, by this encoder."""
-        self._encode = encode
-        for frame in self:
-            self._encode_valid(frame)
-
-    def add(self, posture: Posture) -> tuple[Order, Frame | None]:
-        """Keep the next posture as a frame; None for a stale one, which is not kept. A restart forgets the others."""
-        order = self._guard.judge(posture.stamp_ns)
-        if order is Order.STALE:
-            return order, None
-        if order is Order.RESTART:
-            self.clear()
-            self._flawed_ns = -1
-            self.search.restart()
-        frame = frame_of(posture, self._lost.before(posture.seq, order), self._smoothing)
-        if frame.missing or frame.missed or not frame.valid:
-            self._flawed_ns = frame.stamp_ns
-        self._encode_valid(frame)
-        self.append(frame)
-        return order, frame
-
-    def _encode_valid(self, frame: Frame) -> None:
-        if self._encode is not None and frame.valid:
-            frame.activity = self._encode(frame)
-
-    def stretch(self, start_ns: int, end_ns: int) -> Stretch:
-        """Sum up the frames with start <= stamp <= end: at once where the newest that lacks anything is before them."""
-        frames = self.between(start_ns, end_ns)
-        return Stretch(frames, 0, []) if self._flawed_ns < start_ns else Stretch.of(frames)
-
-    def cut(self, segment: OpenSegment) -> ClosedSegment:
-        """Close a segment that has an end, with those of its frames that have come."""
-        assert segment.end_ns is not None
-        frames = self.between(segment.start_ns or 0, segment.end_ns)
-        reason = None
-        if not any(frame.valid for frame in frames):
-            cause = next((frame.reason for frame in frames if frame.reason is not None), None)
-            reason = with_cause("no usable frame", cause) if frames else "no person"
-        missed = sum(frame.missed for frame in frames) + self._missed_after(segment.end_ns)
-        return segment.closed(frames, missed, reason)
-
-    def _missed_after(self, end_ns: int) -> int:
-        """Return how many frames were lost between the last frame before `end_ns` and the next one; 0 where unknown."""
-        following = self.between(end_ns, FAR_FUTURE_NS)
-        return following[0].missed if following and following[0].stamp_ns > end_ns else 0
 
 
 class Streams:
@@ -105,10 +33,10 @@ class Streams:
         self._silent_since_ns = FAR_FUTURE_NS  # no agent has been silent for longer
 
     def use(self, encoders: Callable[[], Encode], plan: SearchPlan = NO_SEARCH) -> None:
-        """Encode every agent's frames by an encoder of its own, kept ones and those to come; search the latter."""
+        """Encode every agent's frames by an encoder of its own, kept ones when needed; search those to come."""
         self._encoders, self._plan = encoders, plan
         for stream in self._streams.values():
-            stream.use(encoders())
+            stream.use(encoders)
             stream.search.use(plan)
 
     def adjust(self, plan: SearchPlan) -> None:
@@ -135,7 +63,7 @@ class Streams:
         """Keep the next posture of its agent, as `Stream.add` does."""
         stream = self._streams.pop(posture.agent, None)
         if stream is None:
-            stream = Stream(self._encoders() if self._encoders else None, Search(posture, self._plan))
+            stream = Stream(self._encoders, Search(posture, self._plan))
         self._streams[posture.agent] = stream  # behind those heard before it
         kept = len(stream)
         order, frame = stream.add(posture)

@@ -568,35 +568,36 @@ static PyObject *added(PyObject *module, PyObject *args)
 
 PyDoc_STRVAR(smoothed_doc,
     "smoothed(joints, before, state, elapsed_s, gain, still_s, still_mps, lag_s, decay, out) -> bool\n--\n\n"
-    "Advance the kinematics of all joints: write speeds, smooth and lagging positions, velocities, (4, 15, 3). False\n"
-    "where a joint is not known.");
+    "Advance the kinematics of all joints: their state, which is speeds, smooth and lagging positions, (3, 15, 3), and\n"
+    "write smooth positions and velocities, (2, 15, 3). False, and nothing is done, where a joint is not known.");
 static PyObject *smoothed(PyObject *module, PyObject *args)
 {
     Py_buffer b[4];
     int known = 1;
     double elapsed_s, gain, still_s, still_mps, lag_s, decay;
-    if (!PyArg_ParseTuple(args, "y*y*y*ddddddw*", &b[0], &b[1], &b[2], &elapsed_s, &gain, &still_s, &still_mps, &lag_s,
+    if (!PyArg_ParseTuple(args, "y*y*w*ddddddw*", &b[0], &b[1], &b[2], &elapsed_s, &gain, &still_s, &still_mps, &lag_s,
                           &decay, &b[3]))
         return NULL;
-    const double *joints = b[0].buf, *before = b[1].buf, *speed = b[2].buf, *smooth = speed + COORDINATES;
-    const double *lagging = smooth + COORDINATES;
-    double *out = b[3].buf;
-    const size_t one = COORDINATES * sizeof(double), bytes[4] = {one, one, 3 * one, 4 * one};
+    const double *joints = b[0].buf, *before = b[1].buf;
+    double *speed = b[2].buf, *smooth = speed + COORDINATES, *lagging = smooth + COORDINATES, *out = b[3].buf;
+    const size_t one = COORDINATES * sizeof(double), bytes[4] = {one, one, 3 * one, 2 * one};
     if (!are_long_enough(b, bytes, 4))
         return released(b, 4);
-    for (int joint = 0; joint < JOINTS; joint++) {
-        double speed2 = 0.0;
+    for (int joint = 0; joint < JOINTS; joint++)
         known &= !isnan(joints[3 * joint]);
+    for (int joint = 0; joint < JOINTS && known; joint++) {
+        double speed2 = 0.0;
         for (int i = 3 * joint; i < 3 * joint + 3; i++) {
-            out[i] = speed[i] + gain * ((joints[i] - before[i]) / elapsed_s - speed[i]);
-            speed2 += out[i] * out[i];
+            speed[i] = speed[i] + gain * ((joints[i] - before[i]) / elapsed_s - speed[i]);
+            speed2 += speed[i] * speed[i];
         }
         double share = 1 - exp(elapsed_s / -still_s * (1 + sqrt(speed2) / still_mps));
         for (int i = 3 * joint; i < 3 * joint + 3; i++) {
             double step = share * (joints[i] - smooth[i]), behind = lag_s / elapsed_s * step;
-            out[COORDINATES + i] = smooth[i] + step;
-            out[2 * COORDINATES + i] = smooth[i] + step - behind + (lagging[i] - smooth[i] + behind) * decay;
-            out[3 * COORDINATES + i] = out[COORDINATES + i] - out[2 * COORDINATES + i];
+            lagging[i] = smooth[i] + step - behind + (lagging[i] - smooth[i] + behind) * decay;
+            smooth[i] = smooth[i] + step;
+            out[i] = smooth[i];
+            out[COORDINATES + i] = smooth[i] - lagging[i];
         }
     }
     for (int n = 0; n < 4; n++)

@@ -42,6 +42,14 @@ def median(values: Array) -> Array:
     return middle
 
 
+def has_unknown(numbers: Floats) -> bool:
+    """Tell whether a number is NaN.
+
+    By the sum of squares, in which infinite numbers do not cancel: `np.isnan(numbers).any()` takes twice as long.
+    """
+    return math.isnan(np.vdot(numbers, numbers))
+
+
 def joints_to_array(joints: Sequence[Joint]) -> Array:
     """Return a message's joints as an array (joints, 3), NaN where one is missing."""
     if None not in joints:
@@ -52,6 +60,6 @@ def joints_to_array(joints: Sequence[Joint]) -> Array:
 def joints_to_list(joints: Array) -> list[Joint]:
     """Return joints (joints, 3) as the list that a message holds, None where one is NaN."""
     listed: list[Joint] = joints.tolist()
-    if math.isnan(joints.sum()):
+    if has_unknown(joints):
         return [None if unknown else joint for joint, unknown in zip(listed, np.isnan(joints[:, 0]), strict=True)]
     return listed

@@ -6,7 +6,6 @@ from importlib.metadata import distribution
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
-from urllib.request import url2pathname
 
 from actum import __version__
 
@@ -29,6 +28,8 @@ def pip_install(extras: str, origin: str = FOLDER, flag: str = "") -> str:
 
 def adding(extras: str) -> str:
     """Return the command that adds extras to this installation, from the folder or the wheel that it came from."""
+    from urllib.request import url2pathname  # it imports HTTP, which running services do without
+
     text = distribution("actum").read_text("direct_url.json")
     written_by_pip: dict[str, Any] = json.loads(text) if text else {}
     url = urlsplit(written_by_pip.get("url", ""))

@@ -1,10 +1,8 @@
 """The skeleton's bones, and joints scaled to a body whose bones have standard lengths."""
 
-import math
-
 import numpy as np
 
-from actum.arrays import Array
+from actum.arrays import Array, has_unknown
 from actum.geometry import SMALLEST_M, DegenerateError
 from actum.skeletons import INDEX
 
@@ -72,7 +70,7 @@ def scaled(joints: Array) -> Array:
     if np.fmin.reduce(lengths) < SMALLEST_M:
         raise DegenerateError("two joints that a bone connects are at the same position")
     standard = bones * (_LENGTHS_M / lengths)[:, None]
-    from_torso = _positions_where_known(standard) if math.isnan(lengths.sum()) else _PATHS @ standard
+    from_torso = _positions_where_known(standard) if has_unknown(lengths) else _PATHS @ standard
     result: Array = joints[INDEX["torso"]] + from_torso
     return result
 

@@ -24,7 +24,7 @@ from som_classifier.node import POLL_TICKS, SomClassifier
 from som_classifier.presets import Preset
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.spotting.search import NO_SEARCH, Search
-from som_classifier.streams import Stream
+from som_classifier.stream import Stream
 from spotters import Box
 from wire import Wire, without_seq
 
@@ -125,7 +125,7 @@ def test_maps_and_trace_come_with_final_answers_where_asked_for(preset: Preset) 
 
 
 def frames_of(model: Model, postures: Sequence[Posture]) -> list[Frame]:
-    stream = Stream(model.encoder().encode, Search(postures[0], NO_SEARCH))
+    stream = Stream(lambda: model.encoder().encode, Search(postures[0], NO_SEARCH))
     return [frame for posture in postures if (frame := stream.add(posture)[1]) is not None]
 
 

@@ -81,15 +81,32 @@ def test_more_completeness_is_worth_more_and_a_higher_threshold_leaves_less(
 
 
 def test_a_candidate_is_a_windows_likeliest_action_where_it_is_worth_anything() -> None:
-    starts_ns = np.array([0, 0, 0])
-    ends_ns = np.array([0.5, 2.0, 2.0]) * SECOND_NS
-    answers = np.array([[0.9, 0.8], [0.9, 0.8], [0.4, 0.4]])
-    found = LEARNED.candidates(starts_ns, ends_ns.astype(np.int64), answers, 0.5)
-    assert [(each.end_ns / SECOND_NS, each.action, each.completeness) for each in found] == [
-        (0.5, 0, 0.9),
-        (2.0, 1, 0.8),
-    ]
+    starts_ns = [3 * SECOND_NS // 2, 0, 0]
+    found = LEARNED.candidates(starts_ns, 2 * SECOND_NS, [[0.9, 0.8], [0.9, 0.8], [0.4, 0.4]], 0.5)
+    assert [(each.start_ns, each.action, each.completeness) for each in found] == [(starts_ns[0], 0, 0.9), (0, 1, 0.8)]
     assert all(each.gain > 0 for each in found)
+
+
+ANSWERS = st.sampled_from([-0.5, 0.3, 0.6, 0.7]) | st.floats(-1, 2, width=32)
+
+
+@given(
+    windows=st.lists(st.tuples(st.integers(1, 5 * SECOND_NS), ANSWERS, ANSWERS), min_size=1, max_size=8),
+    threshold=st.sampled_from([0.3, 0.6]) | st.floats(0.1, 0.9),
+)
+def test_the_few_windows_of_a_decision_are_judged_as_many_are_in_training(
+    windows: list[tuple[int, float, float]], threshold: float
+) -> None:
+    now_ns = 9 * SECOND_NS
+    starts_ns, answers = [now_ns - each[0] for each in windows], [each[1:] for each in windows]
+    judged = LEARNED.judged(np.array(starts_ns), np.full(len(windows), now_ns), np.array(answers, np.float32))
+    gainful, spans = judged.gainful(threshold)
+    found = LEARNED.candidates(starts_ns, now_ns, np.array(answers, np.float32).tolist(), threshold)
+    assert [each.action for each in found] == judged.actions[gainful].tolist()
+    assert [each.completeness for each in found] == judged.completeness[gainful].tolist()
+    assert [(each.start_ns, each.end_ns, each.gain) for each in found] == list(
+        zip(spans.starts_ns, spans.ends_ns, spans.gains, strict=True)
+    )
 
 
 def test_a_threshold_is_the_lowest_with_no_more_false_alarms_than_asked_for() -> None:

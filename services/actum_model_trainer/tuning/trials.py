@@ -17,7 +17,7 @@ from som_classifier.segmenter import Segmenter
 from som_classifier.segments import OpenSegment
 from som_classifier.spotting.search import Admission, SearchPlan
 from som_classifier.spotting.spotted import NOTHING, Spotted, SpottedSegment, Spotter, SpottingOptions
-from som_classifier.streams import Stream
+from som_classifier.stream import Stream
 
 Searched = Sequence[Sequence[Detection]]
 """What was found in each stretch of a person's frames that was searched on its own, in the order of decisions."""

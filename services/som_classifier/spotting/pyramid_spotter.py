@@ -10,7 +10,6 @@ from actum.losses import StreamBuffer
 from actum.node import SECOND_NS
 from som_classifier.frames import Frame
 from som_classifier.kinematics import GAP_NS
-from som_classifier.spotting.decoding import Candidate
 from som_classifier.spotting.spotted import NOTHING, Ongoing, Spotted, SpottedSegment, Spotter, SpottingOptions
 from som_classifier.spotting.spotting_model import SpottingModel, iou_of_completeness
 
@@ -98,7 +97,8 @@ class PyramidSpotter(Spotter):
         self._interval_ns = round(metadata.interval_s * SECOND_NS)
         longest_ns = round(metadata.window_durations_s[-1] * SECOND_NS)
         self._decoder = learned.decoder()
-        self._recent = RecentFrames(metadata.window_durations_s, self._decoder.memory_ns + longest_ns)
+        self.memory_ns = self._decoder.memory_ns + longest_ns
+        self._recent = RecentFrames(metadata.window_durations_s, self.memory_ns)
         self._next_decision_ns = 0
         self._ongoing: Ongoing | None = None
 
@@ -124,8 +124,9 @@ class PyramidSpotter(Spotter):
             self._ongoing = None
             return NOTHING
         starts_ns = [frames[first].stamp_ns for first in firsts]
-        completeness = self._learned.heads.completeness(self._pool(frames, firsts))
-        decided = self._decoder.step(now_ns, self._candidates(starts_ns, now_ns, completeness))
+        completeness = self._learned.heads.completeness(self._pool(frames, firsts)).tolist()
+        candidates = self._learned.candidates(starts_ns, now_ns, completeness, self._threshold)
+        decided = self._decoder.step(now_ns, candidates)
         self._ongoing = self._likeliest(starts_ns, now_ns, completeness)
         segments = []
         for each in decided:
@@ -133,24 +134,15 @@ class PyramidSpotter(Spotter):
             segments.append(SpottedSegment(first.stamp_ns, each.end_ns, self._labels[each.action]))
         return Spotted(tuple(segments), self._ongoing)
 
-    def _candidates(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> list[Candidate]:
-        """Return the windows that may be actions: none is worth more than it is complete."""
-        likely = np.flatnonzero(completeness.max(axis=1) > self._threshold)
-        if not len(likely):
-            return []
-        starting_ns, ending_ns = np.array(starts_ns)[likely], np.full(len(likely), now_ns)
-        return self._learned.candidates(starting_ns, ending_ns, completeness[likely], self._threshold)
-
-    def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: NDArray[np.float32]) -> Ongoing | None:
+    def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: list[list[float]]) -> Ongoing | None:
         """Return the action to which a window that ends now belongs most surely, None where none belongs to any."""
         free = [n for n, start_ns in enumerate(starts_ns) if self._decoder.is_free(start_ns, now_ns)]
         if not free:
             return None
-        most: list[float] = completeness.max(axis=1).tolist()
-        window = max(free, key=most.__getitem__)
-        action = int(completeness[window].argmax())
-        answer = float(completeness[window, action])
+        window = max(free, key=[max(answers) for answers in completeness].__getitem__)
+        answer = max(completeness[window])
         probability = self._learned.probability(answer)
         if probability < LEAST_PROBABILITY:
             return None
-        return Ongoing(starts_ns[window], self._labels[action], probability, iou_of_completeness(answer))
+        action = self._labels[completeness[window].index(answer)]
+        return Ongoing(starts_ns[window], action, probability, iou_of_completeness(answer))

@@ -95,6 +95,11 @@ class Search:
         """The id that the next segment gets."""
         return f"{self._stream_id}-{self._told + 1}"
 
+    @property
+    def memory_ns(self) -> int:
+        """For how long it needs the activity of a frame (ns)."""
+        return 0 if self._spotter is None else self._spotter.memory_ns
+
     def count_told(self) -> None:
         """Use up `next_id`, for a segment that is published."""
         self._told += 1

@@ -8,6 +8,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
 from som_classifier.frames import Frame
 
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -111,7 +112,13 @@ class SpottingMetadata(BaseModel):
 
 
 class Spotter(ABC):
-    """Searches one person's stream."""
+    """Searches one person's stream.
+
+    Attributes:
+        memory_ns: for how long it, or who answers what it finds, needs the activity of a frame (ns).
+    """
+
+    memory_ns: int = MAX_SEGMENT_NS + MAX_SKEW_NS
 
     @abstractmethod
     def step(self, frame: Frame) -> Spotted:

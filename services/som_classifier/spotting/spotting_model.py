@@ -1,5 +1,6 @@
 """What a model has learned beside its answers so that it finds actions without marks."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
@@ -158,29 +159,55 @@ class SpottingModel:
         waited_ns = round((metadata.window_durations_s[-1] + metadata.lag_s + metadata.interval_s) * SECOND_NS)
         return Decoder(round(metadata.lag_s * SECOND_NS), waited_ns + GAP_NS, metadata.overlap)
 
-    def candidates(self, starts_ns: Stamps, ends_ns: Stamps, completeness: Floats, threshold: float) -> list[Candidate]:
-        """Return for each window the action that it is most likely to be, where it is one.
+    def candidates(
+        self, starts_ns: Sequence[int], now_ns: int, completeness: Sequence[Sequence[float]], threshold: float
+    ) -> list[Candidate]:
+        """Return for each window that ends now the action that it is most likely to be, where it is one.
+
+        They are those that `judged` finds gainful. There are few: none is worth more than it is complete.
 
         Args:
             starts_ns: (n,), the windows' first stamps.
-            ends_ns: (n,), their last stamps.
+            now_ns: their last one.
             completeness: (n, actions), the heads' answers.
             threshold: completeness that must be exceeded.
         """
-        judged = self.judged(starts_ns, ends_ns, completeness)
-        gainful, spans = judged.gainful(threshold)
-        columns = (spans.starts_ns, spans.ends_ns, judged.actions[gainful], judged.completeness[gainful], spans.gains)
-        return list(map(Candidate, *(column.tolist() for column in columns)))
+        likely = [n for n, answers in enumerate(completeness) if max(answers) > threshold]
+        durations_s = [(now_ns - starts_ns[n]) / SECOND_NS for n in likely]
+        log_durations = np.log([max(duration_s, SHORTEST_S) for duration_s in durations_s]).tolist()
+        found = []
+        for n, duration_s, log_duration in zip(likely, durations_s, log_durations, strict=True):
+            action, worth = self._likeliest(completeness[n], log_duration, threshold)
+            gain = (worth - threshold) * (duration_s / self._mean_duration_s)
+            if gain > 0:
+                found.append(Candidate(starts_ns[n], now_ns, action, completeness[n][action], gain))
+        return found
+
+    def _likeliest(self, completeness: Sequence[float], log_duration: float, threshold: float) -> tuple[int, float]:
+        """Return the action as which a window is worth most, and what; the threshold where it is worth no more."""
+        likeliest, most = 0, threshold
+        for action, answer in enumerate(completeness):
+            if answer > most:
+                z = (log_duration - self.metadata.log_duration_means[action]) / self.metadata.log_duration_sds[action]
+                worth = answer + self.metadata.duration_weight * (-0.5 * min(z * z, LARGEST_Z2))
+                likeliest, most = (action, worth) if worth > most else (likeliest, most)
+        return likeliest, most
 
     def judged(self, starts_ns: Stamps, ends_ns: Stamps, completeness: Floats) -> "JudgedWindows":
-        """Find what windows (n,) are most likely to be, whatever the threshold; arguments as for `candidates`."""
+        """Find what windows (n,) are most likely to be, whatever the threshold.
+
+        Args:
+            starts_ns: (n,), their first stamps.
+            ends_ns: (n,), their last stamps.
+            completeness: (n, actions), the heads' answers.
+        """
         durations_s = (ends_ns - starts_ns) / SECOND_NS
-        means, sds, mean_duration_s = self._log_durations
+        means, sds = np.array(self.metadata.log_duration_means), np.array(self.metadata.log_duration_sds)
         z2 = np.square((np.log(np.maximum(durations_s, SHORTEST_S))[:, None] - means) / sds)
         worth = completeness + self.metadata.duration_weight * (-0.5 * np.minimum(z2, LARGEST_Z2))
         actions, rows = worth.argmax(axis=1), np.arange(len(worth))
         best = worth[rows, actions], completeness[rows, actions]
-        return JudgedWindows(starts_ns, ends_ns, actions, *best, durations_s / mean_duration_s)
+        return JudgedWindows(starts_ns, ends_ns, actions, *best, durations_s / self._mean_duration_s)
 
     def probability(self, completeness: float) -> float:
         """Return how probable it is that an action is going on for which a head answers this much."""
@@ -188,7 +215,6 @@ class SpottingModel:
         return float(1.0 / (1.0 + np.exp(-(slope * completeness + intercept))))
 
     @cached_property
-    def _log_durations(self) -> tuple[Array, Array, float]:
-        """Means and deviations of the logarithms of the actions' durations (s), and the mean duration (s)."""
-        means = np.array(self.metadata.log_duration_means)
-        return means, np.array(self.metadata.log_duration_sds), float(np.exp(means).mean())
+    def _mean_duration_s(self) -> float:
+        """The mean duration (s) of an action: of the logarithms' means."""
+        return float(np.exp(self.metadata.log_duration_means).mean())
