@@ -5,7 +5,7 @@ import math
 from collections.abc import Mapping, Sequence
 
 MOST_SHARES = 8
-"""The most active actions count beside the named one; a further one is no expectation."""
+"""So many actions, the most active ones, count beside the named one."""
 NEWTON_STEPS = 16
 """More than the temperature needs."""
 PRECISE = 1e-6
@@ -35,5 +35,5 @@ def _inverse_temperature(gaps: Sequence[float], confidence: float) -> float:
         beyond = sum(terms) - wanted
         if beyond <= PRECISE * wanted:
             break
-        inverse += beyond / max(sum(map(float.__mul__, gaps, terms)), 1e-9)
+        inverse += beyond / max(sum(gap * term for gap, term in zip(gaps, terms, strict=True)), 1e-9)
     return inverse

@@ -18,9 +18,9 @@ KNOWN_AFTER_NS = SECOND_NS
 """How long (ns) after its end an action counts. By then its event is there, also if the action was found without marks
 and objects are up to 0.1 s late: so what is said does not depend on which message came first."""
 MOST_EVENTS = 200
-"""The newest events count, so many: habits change, and others come to the table."""
+"""So many of the newest events count: habits change, and others come to the table."""
 LATE_EVENTS = 64
-"""Further events that are kept, of actions that do not count yet."""
+"""So many more are kept, for the newest ones that do not count yet."""
 PRIOR = 1.0
 """Pairs of an action and an object that are assumed to have been seen, and expected, before the first event. Chosen on
 simulated people 91 to 98: with fewer, chance counts for a habit where objects are drawn at random."""
