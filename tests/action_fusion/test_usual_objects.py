@@ -41,8 +41,21 @@ HABITS = (("drink", CUP), ("push", BOX)) * 3
 
 def test_who_drank_from_the_cup_drinks_from_the_cup() -> None:
     usual = learnt(*HABITS)
-    assert ratio(usual, "drink", CUP) == (3 + 1) / (1.5 + 1)
-    assert ratio(usual, "drink", BOX) == (0 + 1) / (1.5 + 1)
+    assert 1.2 < ratio(usual, "drink", CUP) < 2.0
+    assert 0.0 < ratio(usual, "drink", BOX) < 0.8
+
+
+def test_the_more_often_a_habit_was_kept_the_more_it_counts() -> None:
+    rising = [ratio(learnt(*HABITS[:2] * n), "drink", CUP) for n in (1, 2, 4, 8, 16)]
+    assert rising == sorted(rising)
+    assert rising[-1] > 1.9
+
+
+def test_of_a_person_who_does_anything_to_anything_chance_is_no_habit() -> None:
+    """What happens once more often by chance would count for a lot, if it were all that happened."""
+    anything = [(label, number) for label in ("drink", "push", "wave") for number in (CUP, BOX, 3)] * 4
+    often = ratio(learnt(*anything, ("drink", CUP), ("drink", CUP)), "drink", CUP, objects=(CUP, BOX, 3))
+    assert 1.0 < often < 1.1
 
 
 @pytest.mark.parametrize("habits", [(), HABITS[:1], (("drink", CUP), ("push", CUP)) * 5], ids=["no", "one", "the same"])
@@ -103,7 +116,8 @@ def test_the_order_in_which_events_come_does_not_matter(order: list[int]) -> Non
 def test_of_an_uncertain_action_each_object_names_the_one_that_is_usual_for_it() -> None:
     found = learnt(*HABITS).done(LATER_NS, {"drink": 0.5, "push": 0.4}, [CUP, BOX])
     assert found.actions == ["drink", "push"]
-    assert found.shares[0] == pytest.approx(0.5 * 1.6 / (0.5 * 1.6 + 0.4 * 0.4 + 0.1))
+    drinking, pushing = learnt(*HABITS).ratios(LATER_NS, ["drink", "push"], [CUP, BOX])[:, 0].tolist()
+    assert found.shares[0] == pytest.approx(0.5 * drinking / (0.5 * drinking + 0.4 * pushing + 0.1))
     assert found.likelier[0] > 1.0 > found.likelier[1]
 
 

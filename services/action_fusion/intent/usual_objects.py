@@ -1,14 +1,17 @@
 """What each action is usually done to: people drink from the cup, not from the box."""
 
+import math
 from bisect import bisect_right, insort
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
 from actum.arrays import Array
+from actum.limits import MOST_STREAMS
 from actum.messages import Event
 from actum.node import SECOND_NS
 
@@ -21,9 +24,8 @@ MOST_EVENTS = 200
 """So many of the newest events count: habits change, and others come to the table."""
 LATE_EVENTS = 64
 """So many more are kept, for the newest ones that do not count yet."""
-PRIOR = 1.0
-"""Pairs of an action and an object that are assumed to have been seen, and expected, before the first event. Chosen on
-simulated people 91 to 98: with fewer, chance counts for a habit where objects are drawn at random."""
+STRENGTHS = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+"""How many events the assumption is worth that the object does not depend on the action: from little to nearly all."""
 
 
 class Done(NamedTuple):
@@ -61,26 +63,18 @@ class UsualObjects:
         self._events.clear()
 
     def ratios(self, stamp_ns: int, actions: Sequence[str], objects: Sequence[int]) -> Array:
-        """Return how much more often each action was done to each object than by chance, (actions, n).
-
-        (O + k) / (E + k) with the count O of a pair, k = `PRIOR`, and the count E that the counts of its action and of
-        its object lead to expect if they were independent. Without events it is 1.
+        """Return how much more often each action is done to each object than by chance, (actions, n).
 
         Args:
             stamp_ns: the events that end `KNOWN_AFTER_NS` earlier count.
-            actions: the labels.
+            actions: the labels; of one without an event all is 1.
             objects: the numbers of the objects that are there; others do not count.
         """
         known = self._events[: bisect_right(self._events, stamp_ns - KNOWN_AFTER_NS, key=itemgetter(0))]
-        columns = {number: k for k, number in enumerate(objects)}
-        rows = {action: k for k, action in enumerate(actions)}
-        counts = np.zeros((len(actions) + 1, len(objects)))
-        for (action, number), count in Counter(map(itemgetter(1), known[-MOST_EVENTS:])).items():
-            if number in columns:
-                counts[rows.get(action, -1), columns[number]] += count
-        expected = counts.sum(axis=1, keepdims=True) * counts.sum(axis=0) / max(float(counts.sum()), 1.0)
-        ratios: Array = (counts[:-1] + PRIOR) / (expected[:-1] + PRIOR)
-        return ratios
+        counted = Counter(map(itemgetter(1), known[-MOST_EVENTS:]))
+        of_action = associations(frozenset(counted.items()), tuple(objects))
+        nothing = np.ones(len(objects))
+        return np.array([of_action.get(action, nothing) for action in actions])
 
     def done(self, stamp_ns: int, shares: Mapping[str, float], objects: Sequence[int]) -> Done:
         """Return what is done to each object by a person who may do several actions.
@@ -97,3 +91,40 @@ class UsualObjects:
         chosen = joint.argmax(axis=0)
         best = joint[chosen, np.arange(len(objects))]
         return Done(likelier, [actions[k] for k in chosen.tolist()], best / likelier)
+
+
+@lru_cache(maxsize=MOST_STREAMS)
+def associations(counted: frozenset[tuple[Pair, int]], objects: tuple[int, ...]) -> dict[str, Array]:
+    """Return of each action how much more often it is done to each of n objects than by chance, (n,).
+
+    Gamma-Poisson shrinkage (DuMouchel, Bayesian data mining in large frequency tables, 1999): (O + k) / (E + k), of the
+    count O of a pair and the count E that is expected if the object does not depend on the action. The strength k is
+    unknown. So the ratios of all `STRENGTHS`, and that of independence, which is 1, are averaged, weighted by how
+    probable each makes the counts.
+
+    Args:
+        counted: how often each pair occurred.
+        objects: the numbers of the objects that are there.
+    """
+    there = {pair: count for pair, count in sorted(counted) if pair[1] in objects}
+    actions = sorted({action for action, _ in there})
+    counts = np.array([[there.get((action, number), 0) for number in objects] for action in actions])
+    if not actions:
+        return {}
+    expected = counts.sum(axis=1, keepdims=True) * counts.sum(axis=0) / counts.sum()
+    logs = np.array([*(_log_likelihood(counts, expected, k) for k in STRENGTHS), -expected.sum()])
+    weights = np.exp(logs - logs.max())
+    lifts = np.array([(counts + k) / (expected + k) - 1 for k in STRENGTHS])
+    ratios = 1 + np.tensordot(weights[:-1] / weights.sum(), lifts, axes=1)
+    return dict(zip(actions, ratios, strict=True))
+
+
+def _log_likelihood(counts: Array, expected: Array, k: float) -> float:
+    """Return the logarithm of the probability of all counts, the rates being `expected` times a gamma of mean 1.
+
+    The gamma has shape k. What does not depend on k is left out.
+    """
+    shape: float = sum(
+        math.lgamma(count + k) - math.lgamma(k) - count * math.log(k) for count in counts[counts > 0].tolist()
+    )
+    return shape - float(((counts + k) * np.log1p(expected / k)).sum())
