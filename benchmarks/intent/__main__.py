@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from benchmarks.intent import cad120, pairs
+from benchmarks.intent import cad120, habits, pairs
 from benchmarks.intent.learning import (
     CAPTURED_WEIGHT,
     EVERYDAY_WEIGHT,
@@ -127,6 +127,11 @@ def of_pairs(_folder: Path | None) -> Iterator[str]:
     yield from pairs.table(TESTED, TEST_SEED)
 
 
+def of_habits(_folder: Path | None) -> Iterator[str]:
+    """Yield what the objects of earlier actions add."""
+    yield from habits.table(TESTED, TEST_SEED)
+
+
 def of_cad120(folder: Path | None) -> Iterator[str]:
     """Yield the table of reaches whose objects are known by their boxes alone."""
     near = None if folder is None else folder.with_name("cad120")
@@ -153,6 +158,7 @@ PARTS: Mapping[str, tuple[str, Callable[[Path | None], Iterator[str]]]] = {
     "everyday": ("Everyday things", of_everyday),
     "cad120": ("Reaches among boxes", of_cad120),
     "pairs": ("Action and object together", of_pairs),
+    "habits": ("What each action was done to before", of_habits),
     "cost": ("Cost", of_cost),
 }
 

@@ -51,6 +51,17 @@ def scene_of(person: int, seed: int, objects: int, apart_m: float, tasks: int = 
     return Scene(programme, person, seed, _with_objects(objects, apart_m), doings)
 
 
+def scene_with_habits(person: int, seed: int, objects: int, apart_m: float, tasks: int, share: float) -> Scene:
+    """Return a scene in which a share of each action is done to one of three objects, the rest to any of them."""
+    rng = np.random.default_rng((person, seed, objects))
+    usual = {action: int(rng.integers(1, 4)) for action in ACTIONS}
+    programme = [
+        Task(action, usual[action] if rng.random() < share else int(rng.integers(1, 4)))
+        for action in rng.choice(ACTIONS, tasks).tolist()
+    ]
+    return Scene(programme, person, seed, _with_objects(objects, apart_m))
+
+
 def _with_objects(count: int, apart_m: float) -> Parameters:
     parameters = load_parameters()
     items = parameters.objects.items

@@ -233,7 +233,7 @@ class ActionFusion:
         if (reason := self._before.why_incomplete(postures_ns, objects_ns, start_ns, end_ns)) is not None:
             self.counters.reject("incomplete_segment", f"{action.segment_id}: {reason}")
             return rejected(action, reason)
-        return fuse(
+        event = fuse(
             action,
             own.of_segment(start_ns, end_ns),
             [buffer.hands_of_segment(start_ns, end_ns) for buffer in people],
@@ -241,3 +241,5 @@ class ActionFusion:
             self._objects.of_segment(start_ns, end_ns),
             self._settings,
         )
+        self._intents.event(event)
+        return event

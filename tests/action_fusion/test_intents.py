@@ -1,5 +1,7 @@
 """What an intent says: nothing of what comes later, the same whatever came first, and calibrated from the start."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,22 +10,46 @@ from hypothesis import strategies as st
 from action_fusion.intake.stream_samples import ObjectsSample
 from action_fusion.intent.approach import FEATURES, approach
 from action_fusion.intent.contact_network import ContactNetwork, shipped_network
-from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_next, touched_place, touched_soon
+from action_fusion.intent.intents import ACTIONS_LATE_NS, touched_given, touched_next, touched_place, touched_soon
 from action_fusion.intent.recent_beginnings import MOST_BEGINNINGS
 from action_fusion.intent.recent_paths import ARMS, OBJECTS_LATE_NS, RecentArms, RecentObjects
+from action_fusion.intent.usual_objects import Done
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
 from actum.messages import Action, Intended, Message, Objects
 from actum.node import SECOND_NS
 from fused import intents_of
-from scenes import FRAME_NS, acting_on, action
+from scenes import FRAME_NS, REST_RIGHT, Scene, acting_on, action, moving, still
 
 REACH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65), others={2: (-0.4, 0.0, 0.5)})
 
 
-def stream(end_s: float = 1.2) -> list[Message]:
-    messages = [*REACH.postures(-0.5, end_s), *REACH.sightings(-0.5, end_s)]
+TO_THE_BOX = replace(
+    REACH,
+    right_hand=moving((0.0, REST_RIGHT), (0.8, (-0.4, 0.08, 0.5)), (1.6, (-0.4, 0.08, 0.7))),
+    objects={1: still((0.1, 0.0, 0.45)), 2: moving((0.8, (-0.4, 0.0, 0.5)), (1.6, (-0.4, 0.0, 0.7)))},
+)
+
+
+def stream(end_s: float = 1.2, scene: Scene = REACH) -> list[Message]:
+    messages = [*scene.postures(-0.5, end_s), *scene.sightings(-0.5, end_s)]
     return sorted(messages, key=lambda message: message.stamp_ns or 0)
+
+
+def day(gap_s: float = 30.0) -> list[Message]:
+    """The cup is lifted, the box pushed; then the hand reaches for the cup, and both actions are equally likely."""
+    acts: list[list[Message]] = [
+        [*stream(1.7), action("lift", 0.0, 1.5, segment_id="first")],
+        [*stream(1.7, TO_THE_BOX), action("push", 0.0, 1.5, segment_id="second")],
+        [*stream(0.75), *(partial(s, confidence=0.5, activations={"lift": 0.3, "push": 0.3}) for s in (0.2, 0.3, 0.4))],
+    ]
+    shifted = [shift(message, number * gap_s) for number, act in enumerate(acts) for message in act]
+    return sorted(shifted, key=lambda message: message.stamp_ns or 0)
+
+
+def shift(message: Message, seconds: float) -> Message:
+    stamps = [name for name in ("stamp_ns", "start_ns", "end_ns") if getattr(message, name, None) is not None]
+    return message.model_copy(update={name: getattr(message, name) + round(seconds * SECOND_NS) for name in stamps})
 
 
 def straight(arms: RecentArms, towards: np.ndarray, speed_mps: float, seconds: float = 0.9) -> int:
@@ -74,10 +100,10 @@ def test_what_was_not_seen_for_ten_seconds_is_nowhere() -> None:
     assert objects.at(10 * SECOND_NS + 1, 0)[0] == {}
 
 
-@given(cut=st.integers(2, 80))
+@given(cut=st.integers(2, 400))
 @settings(max_examples=20, deadline=None)
 def test_an_intent_depends_on_nothing_later(cut: int) -> None:
-    messages = stream()
+    messages = day()
     whole = intents_of(ActionFusion(Settings()), *messages)
     part = intents_of(ActionFusion(Settings()), *messages[:cut])
     assert part == whole[: len(part)]
@@ -89,8 +115,7 @@ def test_objects_and_actions_that_come_up_to_a_tenth_of_a_second_late_change_no_
     objects_late_ns: int, action_late_ns: int
 ) -> None:
     late_ns = {Objects: objects_late_ns, Action: action_late_ns}
-    partials = [action("lift", 0.0, s, final=False, completeness=s, confidence=0.5) for s in (0.2, 0.3, 0.4)]
-    captured = sorted([*stream(), *partials], key=lambda message: message.stamp_ns or 0)
+    captured = day(gap_s=2.2)
     arriving = sorted(captured, key=lambda message: (message.stamp_ns or 0) + late_ns.get(type(message), 0))
     said = intents_of(ActionFusion(Settings()), *captured)
     assert any(each.segment_id for each in said)
@@ -145,8 +170,8 @@ def newest(*also: Message) -> Intended:
     return intents_of(ActionFusion(Settings()), *also, *stream(0.75))[-1].intended[0]
 
 
-def partial(**fields: object) -> Message:
-    return action("lift", 0.0, 0.4, final=False, **fields)
+def partial(end_s: float = 0.4, **fields: object) -> Message:
+    return action("lift", 0.0, end_s, final=False, **fields)
 
 
 def test_the_action_that_goes_on_has_its_confidence_as_its_share_of_the_contact() -> None:
@@ -154,6 +179,39 @@ def test_the_action_that_goes_on_has_its_confidence_as_its_share_of_the_contact(
     assert (alone.action, alone.action_probability) == (None, None)
     assert (doing.action, doing.action_probability) == ("lift", pytest.approx(0.5 * doing.probability))
     assert doing.probability == alone.probability
+
+
+def without_events(messages: list[Message]) -> list[Message]:
+    return [message for message in messages if not (isinstance(message, Action) and message.final)]
+
+
+def test_somebody_who_lifted_the_cup_and_pushed_the_box_is_likelier_to_lift_the_cup_again() -> None:
+    usual, anew = (
+        intents_of(ActionFusion(Settings()), *acts)[-1].intended[0] for acts in (day(), without_events(day()))
+    )
+    assert (usual.object_name, usual.action) == (anew.object_name, anew.action) == ("cup", "lift")
+    assert anew.action_probability == pytest.approx(0.5 * anew.probability)
+    assert 0.55 * usual.probability < (usual.action_probability or 0.0) < 0.75 * usual.probability
+    assert usual.probability >= anew.probability
+
+
+def test_what_is_done_makes_one_object_likelier_than_another_and_a_contact_no_likelier() -> None:
+    alone = np.array([0.3, 0.4, 0.0])
+    given_lift = touched_given(Done(np.array([2.0, 0.5, 1.0]), ["lift"] * 3, np.ones(3)), alone)
+    np.testing.assert_allclose(given_lift, [0.3 * 2 * 0.7 / 0.8, 0.4 * 0.5 * 0.7 / 0.8, 0.0])
+    for nothing in (None, Done(np.ones(3), ["lift"] * 3, np.ones(3))):
+        np.testing.assert_array_equal(touched_given(nothing, alone), alone)
+
+
+def test_after_a_restart_of_the_sensor_nobody_has_habits() -> None:
+    node = ActionFusion(Settings())
+    intents_of(node, *day())
+    again = [
+        shift(message, -90.0).model_copy(update={"session_id": "run-2"})
+        for message in day()
+        if (message.stamp_ns or 0) > REACH.posture(50.0).stamp_ns
+    ]
+    assert intents_of(node, *again)[-1].intended == intents_of(ActionFusion(Settings()), *again)[-1].intended
 
 
 @pytest.mark.parametrize(("confidence", "share"), [(2.0, 1.0), (-1.0, 0.0)])

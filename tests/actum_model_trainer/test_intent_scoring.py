@@ -56,6 +56,15 @@ def test_what_was_announced_longer_ago_than_the_horizon_is_a_false_alarm() -> No
     assert false_alarms_per_min([said(1, 4.6, 5.0)]) == 0.0
 
 
+def test_what_is_announced_while_somebody_points_is_no_false_alarm_and_no_probability_of_a_contact() -> None:
+    early = said(1, 2.0, 3.0)
+    pointing = replace(early, take=replace(early.take, pointing_ns=[(2 * SECOND_NS, 4 * SECOND_NS)]))
+    assert false_alarms_per_min([early]) > 0 == false_alarms_per_min([pointing])
+    late = said(1, 5.4, 6.0)
+    assert calibration_error([early, late]) > calibration_error([pointing, late]) == pytest.approx(0.2)
+    assert ahead([pointing, late], 0.5).precision == 1.0 > ahead([early, late], 0.5).precision
+
+
 def test_what_is_announced_for_longer_than_the_horizon_is_announced_anew() -> None:
     """From 1.0, 2.5 and 4.0 s on in vain, and from 5.6 s on rightly."""
     result = ahead([said(1, 1.0, 6.0)], 0.5)

@@ -66,6 +66,15 @@ def test_recorded_postures_count_where_there_are_no_skeletons(record: Record, sc
     assert_true(recorded_in([record("postures", *without(Skeleton, scene), *postures)]))
 
 
+def test_while_somebody_points_at_an_object_no_contact_is_announced_in_vain(
+    record: Record, scene: list[Message]
+) -> None:
+    [take] = recorded_in([record("pointing", *scene)]).takes
+    [(start_ns, end_ns)] = take.pointing_ns
+    starts = [each.stamp_ns for each in scene if isinstance(each, Segment) and each.kind == "start"]
+    assert starts[2] == start_ns < end_ns < starts[3]
+
+
 def test_actions_that_are_not_labelled_have_no_contacts(record: Record, scene: list[Message]) -> None:
     recorded = recorded_in([record("unmarked", *without(Segment, scene))])
     assert (recorded.contacts, recorded.without_contact) == (0, 0)

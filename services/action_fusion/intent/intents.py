@@ -8,13 +8,15 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
+from action_fusion.intent.action_shares import shares_of
 from action_fusion.intent.approach import Approach, approach
 from action_fusion.intent.contact_network import ContactNetwork, Foreseen, shipped_network
 from action_fusion.intent.recent_beginnings import RecentBeginnings
 from action_fusion.intent.recent_paths import LONGEST_GAP_NS, SIDES, RecentArms, RecentObjects, arms_of
+from action_fusion.intent.usual_objects import Done, UsualObjects
 from actum.arrays import Array
 from actum.limits import MOST_STREAMS
-from actum.messages import Action, Hand, Intended, Intent
+from actum.messages import Action, Event, Hand, Intended, Intent
 from actum.node import SECOND_NS
 
 LEAST = 0.05
@@ -33,23 +35,25 @@ SOONEST_S, LATEST_S = 0.02, 1.5
 
 
 class Estimate(NamedTuple):
-    """What an intent needs of a partial action, or of the final one; that is little, however large the message is."""
+    """What an intent needs of a partial action, or of the final one; that is little, however large the message is.
+
+    `shares` are the probabilities of the likeliest actions, the named one first; empty where no action is known.
+    """
 
     stamp_ns: int
     segment_id: str
     final: bool
-    action: str | None
-    confidence: float
+    shares: dict[str, float]
     hand: Hand | None
     completeness: float | None
 
     @classmethod
     def of(cls, action: Action) -> Self:
         """Take it from an action; one that may be unknown counts as none."""
-        label = None if action.unknown else action.action
-        confidence = min(max(action.confidence, 0.0), 1.0)
-        of_segment = action.stamp_ns, action.segment_id, action.final
-        return cls(*of_segment, label, confidence, action.hand, action.completeness)
+        shares: dict[str, float] = {}
+        if action.action is not None and not action.unknown and not action.final:
+            shares = shares_of(action.action, min(max(action.confidence, 0.0), 1.0), action.activations)
+        return cls(action.stamp_ns, action.segment_id, action.final, shares, action.hand, action.completeness)
 
 
 @dataclass
@@ -84,6 +88,7 @@ class Intents:
     def __init__(self, network: ContactNetwork | None = None) -> None:
         self._network = network or shipped_network()
         self._objects = RecentObjects()
+        self._usual = UsualObjects()
         self._people: OrderedDict[int, Person] = OrderedDict()
 
     def posture(self, sample: PostureSample, agent: int, sensor: str) -> Intent | None:
@@ -121,9 +126,14 @@ class Intents:
         if action.agent and (action.valid or action.final):
             self._person(action.agent).estimates.append(Estimate.of(action))
 
+    def event(self, event: Event) -> None:
+        """Take which object an action was done to."""
+        self._usual.append(event)
+
     def clear(self) -> None:
         """Forget everything, after a restart of a stream."""
         self._objects.clear()
+        self._usual.clear()
         self._people.clear()
 
     def _person(self, agent: int) -> Person:
@@ -140,13 +150,14 @@ class Intents:
         if known is None:
             return
         seen, foreseen = known
-        soon = touched_soon(foreseen.probability)
+        done = self._done(stamp_ns, ongoing, [*seen.names])
+        probability = np.stack([touched_given(*of_hand) for of_hand in zip(done, foreseen.probability, strict=True)])
+        soon = touched_soon(probability)
         touched = touched_next(soon)
         for k in np.flatnonzero(soon >= LEAST).tolist():
             number, name = [*seen.names.items()][k]
-            hand = int(foreseen.probability[:, k].argmax())
-            contact_s = min(max(float(foreseen.contact_s[hand, k]), SOONEST_S), LATEST_S)
-            action, confidence = _done(ongoing, SIDES[hand])
+            hand = int(probability[:, k].argmax())
+            action, share = (None, 0.0) if (doing := done[hand]) is None else doing.with_object(k)
             yield Intended(
                 object_id=number,
                 object_name=name,
@@ -154,11 +165,22 @@ class Intents:
                 probability=float(touched[k]),
                 soon_probability=float(soon[k]),
                 action=action,
-                action_probability=None if action is None else float(touched[k]) * confidence,
-                contact_s=contact_s,
-                contact_std_s=contact_s * float(self._network.time_sd),
+                action_probability=None if action is None else float(touched[k]) * share,
+                **self._when(float(foreseen.contact_s[hand, k])),
                 place_m=touched_place(seen.hands_m[hand], seen.objects_m[k]).tolist(),
             )
+
+    def _when(self, contact_s: float) -> dict[str, float]:
+        """Return the time until a contact and its standard deviation (s), as an intent has them."""
+        within_s = min(max(contact_s, SOONEST_S), LATEST_S)
+        return {"contact_s": within_s, "contact_std_s": within_s * float(self._network.time_sd)}
+
+    def _done(self, stamp_ns: int, ongoing: Estimate | None, objects: list[int]) -> list[Done | None]:
+        """Return what each hand does to the objects; None where it does no known action."""
+        if ongoing is None or not ongoing.shares:
+            return [None, None]
+        done = self._usual.done(stamp_ns, ongoing.shares, objects)
+        return [done if ongoing.hand in (None, side) else None for side in SIDES]
 
     def _foreseen(self, person: Person, stamp_ns: int) -> tuple[Approach, Foreseen] | None:
         """Return how the hands approach the objects, and the contacts foreseen; None where no object is known."""
@@ -185,11 +207,13 @@ def touched_next(soon: Array) -> Array:
     return touched
 
 
-def _done(ongoing: Estimate | None, hand: Hand) -> tuple[str | None, float]:
-    """Return the action that a hand may do, and its confidence; None for none, and for one of the other hand."""
-    if ongoing is None or ongoing.hand not in (None, hand):
-        return None, 0.0
-    return ongoing.action, ongoing.confidence
+def touched_given(done: Done | None, probability: Array) -> Array:
+    """Return the probability that a hand touches each of n objects, (n,), given what it does; the sum stays."""
+    if done is None:
+        return probability
+    weighed = probability * done.likelier
+    given: Array = weighed * (probability.sum() / max(float(weighed.sum()), 1e-300))
+    return given
 
 
 def touched_place(hand_m: Array, object_m: Array) -> Array:

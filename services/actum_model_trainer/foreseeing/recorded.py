@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from action_fusion.intake.stream_samples import objects_sample, posture_sample
 from action_fusion.intent.recent_paths import arms_of
+from action_fusion.settings import Settings
 from actum import keys
 from actum.arrays import Array
 from actum.messages import Message, Objects, Posture, Truth, is_action
@@ -25,6 +26,8 @@ REST_NS = SECOND_NS // 2
 """How long before an action (ns) the place at which an object rests is measured."""
 REACH_M = 0.25
 """Largest distance (m) between a hand's joint and the middle of an object that this hand moves."""
+POINTING: frozenset[str] = Settings.model_fields["pointing_labels"].default
+"""Actions in which the person points at an object and does not touch it, by the fusion's default."""
 FEWEST_FRAMES = 2
 """Frames of a take: with fewer it does not last."""
 
@@ -138,7 +141,8 @@ def _takes(collected: ContactCollector, name: str) -> Iterator[Take]:
             own = [each for each in collected.actions if each.agent == agent]
             found = [_contact(each, arms, near, collected.named.get(each.segment_id)) for each in own]
             contacts = sorted(contact for contact in found if contact is not None)
-            yield Take(f"{name}, agent {agent}", arms.stamps_ns, arms.places_m, objects_m, contacts)
+            pointing_ns = [(each.start_ns, each.end_ns) for each in own if each.label in POINTING]
+            yield Take(f"{name}, agent {agent}", arms.stamps_ns, arms.places_m, objects_m, contacts, pointing_ns)
 
 
 def _at_frames(track: Track, stamps_ns: NDArray[np.int64]) -> Array:

@@ -57,10 +57,14 @@ class Said:
         return sorted(self.take.objects_m)
 
     def announcements(self, threshold: float) -> Iterator["Announcement"]:
-        """Yield when each object is announced; one that goes on for longer than the horizon is announced anew."""
+        """Yield when each object is announced; one that goes on for longer than the horizon is announced anew.
+
+        While somebody points at something, an announcement is neither right nor wrong, and is left out.
+        """
+        counted = ~self.take.in_pointing(self.take.stamps_ns)
         for number, scores in zip(self.numbers, self.scores.T, strict=True):
             first_s = last_s = -np.inf
-            for at_s in self.stamps_s[scores >= threshold].tolist():
+            for at_s in self.stamps_s[counted & (scores >= threshold)].tolist():
                 if at_s > min(last_s + BREAK_S, first_s + HORIZON_S):
                     first_s = at_s
                     yield Announcement(number, first_s)
@@ -181,12 +185,13 @@ class Scores(NamedTuple):
 
 def calibration_error(said: Sequence[Said]) -> float:
     """Return the expected calibration error of the likeliest object's probability of a touch within the horizon."""
-    told, true = [], []
+    told, true, pointing = [], [], []
     for each in said:
         told.append(each.scores.max(axis=1))
         true.append(touched_soon(each)[np.arange(len(each.scores)), each.scores.argmax(axis=1)])
+        pointing.append(each.take.in_pointing(each.take.stamps_ns))
     probability, came = np.concatenate(told), np.concatenate(true)
-    counted = probability > BACKGROUND
+    counted = (probability > BACKGROUND) & ~np.concatenate(pointing)
     probability, came = probability[counted], came[counted]
     in_bin = [np.minimum((probability * BINS).astype(int), BINS - 1) == k for k in range(BINS)]
     gaps = [abs(probability[k].mean() - came[k].mean()) * k.mean() for k in in_bin if k.any()]

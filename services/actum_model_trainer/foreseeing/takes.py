@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from action_fusion.intake.stream_samples import ObjectsSample
-from actum.arrays import Array
+from actum.arrays import Array, Mask
 from actum.node import SECOND_NS
 
 
@@ -39,6 +39,7 @@ class Take:
         arms_m: (T, 6, 3), joints in the order of `action_fusion.intent.recent_paths.ARMS`, NaN where unknown.
         objects_m: by number the places of each object, (T, 3), NaN where it is not seen.
         contacts: by stamp.
+        pointing_ns: start and end of each action in which the person points at something, which is no contact.
     """
 
     name: str
@@ -46,6 +47,14 @@ class Take:
     arms_m: Array
     objects_m: Mapping[int, Array]
     contacts: Sequence[Contact]
+    pointing_ns: Sequence[tuple[int, int]] = ()
+
+    def in_pointing(self, stamps_ns: NDArray[np.int64]) -> Mask:
+        """Tell at which of n stamps the person points at something, (n,)."""
+        pointing = np.zeros(len(stamps_ns), bool)
+        for start_ns, end_ns in self.pointing_ns:
+            pointing |= (stamps_ns >= start_ns) & (stamps_ns <= end_ns)
+        return pointing
 
     @property
     def minutes(self) -> float:

@@ -36,10 +36,12 @@ class Intended(Model):
     """The probability that the person touches this object within 1.5 s, next or after another one, 0 to 1. It is
     greater than `probability` while the hands reach for different objects: only one can be next, both are touched."""
     action: Name | None = None
-    """The likeliest ongoing action; null if none is known, or if the action is marked for the other hand."""
+    """The likeliest ongoing action if the person touches this object; null if none is known, or if the action is marked
+    for the other hand."""
     action_probability: FiniteFloat | None = None
-    """The probability that the person touches this object next and does `action` to it: `probability` times the
-    action's confidence; null if `action` is null."""
+    """The probability that the person touches this object next and does `action` to it: `probability` times that of
+    `action` for this object, which follows from the action's confidence and from what each action was done to before;
+    null if `action` is null."""
     contact_s: FiniteFloat
     """The expected time from `stamp_ns` to the contact (s)."""
     contact_std_s: Deviation
