@@ -1613,6 +1613,10 @@ static PyObject *learned(PyObject *module, PyObject *args)
     Learning l;
     if (!PyArg_ParseTuple(args, "w*y*y*y*nn", &b[0], &b[1], &b[2], &b[3], &l.steps, &itemsize))
         return NULL;
+    if (itemsize != sizeof(float) && itemsize != sizeof(double)) {
+        PyErr_SetString(PyExc_ValueError, "the numbers have neither single nor double precision");
+        return released(b, 4);
+    }
     Py_ssize_t row = itemsize * (l.steps > 0 ? l.steps : 1);
     l.weights = b[0].buf, l.inputs = b[1].buf, l.over_rows = b[2].buf, l.over_cols = b[3].buf;
     l.dim = b[1].len / row, l.rows = b[2].len / row, l.cols = b[3].len / row;

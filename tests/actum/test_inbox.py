@@ -10,10 +10,13 @@ from actum.codec import decode
 from actum.messages import Posture
 from actum.runtime.inbox import RESUMED_FRAMES_S, RESUMED_S, Inbox, Reach
 from actum.runtime.outbox import Outbox
+from actum.runtime.subscribing import ANSWER_S
 from live import wait_until
 from people import postures
 
 FRAMES = postures(0.0, 10.0)
+REACH = Reach(RESUMED_S, RESUMED_S, RESUMED_FRAMES_S, depth=None)
+"""How far back a service reaches that goes on where another one ended."""
 
 
 @pytest.fixture
@@ -27,14 +30,14 @@ def session() -> zenoh.Session:
 
 
 def started(session: zenoh.Session, received: list[Posture]) -> Inbox:
-    """An inbox of postures, as of a service that goes on where another one ended."""
+    """An inbox of postures."""
 
     def receive(sample: zenoh.Sample) -> None:
         message = decode(str(sample.key_expr), sample.payload.to_bytes(), str(sample.encoding))
         assert isinstance(message, Posture)
         received.append(message)
 
-    inbox = Inbox(session, (keys.POSTURE,), "kinect0", Reach(RESUMED_S, RESUMED_S, RESUMED_FRAMES_S, depth=None))
+    inbox = Inbox(session, (keys.POSTURE,), "kinect0", REACH)
     inbox.start(receive)
     return inbox
 
@@ -70,12 +73,35 @@ def test_a_subscription_that_is_closed_while_the_past_is_awaited_ends_without_an
     silent = session.declare_queryable(f"{keys.pattern(keys.POSTURE, 'kinect0')}/@adv/**", held.append)
     inbox = started(session, [])
     wait_until(lambda: bool(held), "the past is requested")
-    inbox.close()
+    for subscriber in inbox._subscribers:
+        subscriber.undeclare()
+    for thread in inbox._threads:
+        thread.join(ANSWER_S / 2)
+    assert not inbox.working, "nobody has answered, and its thread still waits"
     held.clear()
-    wait_until(lambda: not inbox.working, "its threads have ended")
     silent.undeclare()
     session.close()
     assert errors == []
+
+
+def test_a_subscription_that_is_closed_in_the_middle_of_the_past_passes_on_no_more_of_it(
+    session: zenoh.Session,
+) -> None:
+    """The node has ended then: a process that shares its sensor may answer in its place, and its journal is closed."""
+    outbox, received = Outbox(session), list[zenoh.Sample]()
+    for frame in FRAMES[:5]:
+        outbox.put(frame)
+    inbox = Inbox(session, (keys.POSTURE,), "kinect0", REACH)
+
+    def close_at_first(sample: zenoh.Sample) -> None:
+        received.append(sample)
+        for subscriber in inbox._subscribers:
+            subscriber.undeclare()
+
+    inbox.start(close_at_first)
+    wait_until(lambda: not inbox.working, "its thread has ended")
+    session.close()
+    assert len(received) == 1
 
 
 def test_what_was_put_before_is_received_though_more_is_put_while_it_is_requested(session: zenoh.Session) -> None:

@@ -118,6 +118,7 @@ class Client:
     def listen_back(self, key_expr: str, history_s: float) -> Listening:
         """Subscribe to keys, request what is lost on the way, and what was put in the last `history_s` (s) and is kept.
 
+        The first read, also by `receive`, waits for what is kept: as a rule some milliseconds, two seconds at most.
         A service that was started anew offers its last answers once more: the same `segment_id` says the same.
         """
         return self._listening_to(RecoveringSubscriber(self._session, key_expr, DEEP_RING, Past(history_s)))

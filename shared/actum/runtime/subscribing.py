@@ -49,6 +49,10 @@ class Kept:
         self._is_complete.wait(2 * ANSWER_S)
         return sorted((reply.ok for reply in self._replies if reply.ok is not None), key=_put_at)
 
+    def give_up(self) -> None:
+        """Have nobody wait any longer."""
+        self._is_complete.set()
+
 
 class RecoveringSubscriber:
     """Returns the past in the order in which it was put, then what is put from now on; requests what gets lost.
@@ -68,12 +72,12 @@ class RecoveringSubscriber:
         self._kept = past and Kept(session, key_expr, f"[now(-{past.age_s:.3f}s)..]", past.most)
         self._earlier: deque[zenoh.Sample] = deque()
         self._newest: dict[Source, int] = {}
+        self._is_undeclared = False
 
     def __iter__(self) -> Iterator[zenoh.Sample]:
         """Yield samples until the subscriber is undeclared."""
-        self._await_kept()
-        while self._earlier:
-            yield self._earlier.popleft()
+        while (earlier := self._next_earlier()) is not None:
+            yield earlier
         for sample in self._live:
             if self._is_new(sample):
                 yield sample
@@ -84,24 +88,30 @@ class RecoveringSubscriber:
         Raises:
             zenoh.ZError: the subscriber was undeclared.
         """
-        self._await_kept()
-        if self._earlier:
-            return self._earlier.popleft()
+        if (earlier := self._next_earlier()) is not None:
+            return earlier
         while (sample := self._live.try_recv()) is not None:
             if self._is_new(sample):
                 return sample
         return None
 
     def undeclare(self) -> None:
-        """End the subscription."""
+        """End the subscription, also for a thread that awaits the past or is in the middle of it."""
+        self._is_undeclared = True
+        if (kept := self._kept) is not None:
+            kept.give_up()
         self._subscriber.undeclare()
 
-    def _await_kept(self) -> None:
-        """Take what was put before this subscriber, at the first call; note the newest number of each publisher."""
-        if self._kept is None:
-            return
-        self._earlier.extend(self._kept.samples())
-        self._kept = None
+    def _next_earlier(self) -> zenoh.Sample | None:
+        """Return the next sample of the past, which the first call awaits; None after the last, or once undeclared."""
+        if self._kept is not None:
+            self._take(self._kept)
+            self._kept = None
+        return self._earlier.popleft() if self._earlier and not self._is_undeclared else None
+
+    def _take(self, kept: Kept) -> None:
+        """Take what was put before this subscriber, and note the newest number of each publisher."""
+        self._earlier.extend(kept.samples())
         for sample in self._earlier:
             if (info := sample.source_info) is not None:
                 source = _source(info)

@@ -58,3 +58,10 @@ def test_without_the_compiled_kernel_maps_learn_by_the_one_in_numpy(monkeypatch:
 def test_a_map_of_more_units_than_columns_is_refused() -> None:
     with pytest.raises(ValueError, match="more units than the weights have columns"):
         adapt_compiled(np.zeros((1, 3)), np.ones((1, 1)), np.ones((1, 2)), np.ones((1, 2)))
+
+
+@needs_compiler
+def test_half_precision_is_refused() -> None:
+    """It was taken for double, and what lies behind the arrays was written to."""
+    with pytest.raises(ValueError, match="neither single nor double"):
+        adapt_compiled(*(np.ones((2, 2), np.float16) for _ in range(4)))
