@@ -12,6 +12,7 @@ from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import SegmentSample
+from actum_model_trainer.side_by_side import side_by_side
 from som_classifier.first_layer import FirstMaps
 from som_classifier.frame_activity import UM_PER_M
 from som_classifier.pyramid import PrefixSums, Pyramid
@@ -32,6 +33,7 @@ class PooledVectors(NamedTuple):
 
 
 MAX_VECTORS = 2_000  # per stage, beyond one of each sample: more make the discriminants hardly better
+PART = 32  # samples that are pooled one after the other, beside others
 CHUNK = 256  # vectors that are reduced to coordinates at once
 MIN_FRAMES = 3  # of a share of an action: with fewer the live classifier gives no answer either
 
@@ -67,17 +69,24 @@ class Pooling:
             progress: of the pooling.
         """
         chosen = [_chosen(variants, fractions, beside + len(samples)) for fractions in stages]
-        rows = [Rows(self.basis, self._inputs, sum(map(len, of_stage))) for of_stage in chosen]
-        for index, (sample, of_sample) in enumerate(zip(samples, variants, strict=True)):
-            progress("pooling of examples", index, len(samples))
-            sums = _VariantSums(self, sample, of_sample)
-            for of_stage, own in zip(chosen, rows, strict=True):
-                for fraction, variant in of_stage[index]:
-                    self._pool(sums.until(variant, fraction), own.room())
-        progress("pooling of examples", len(samples), len(samples))
+
+        def pooled(part: range) -> list[NDArray[np.float32]]:
+            rows = [Rows(self.basis, self._inputs, sum(len(of_stage[n]) for n in part)) for of_stage in chosen]
+            for index in part:
+                sums = _VariantSums(self, samples[index], variants[index])
+                for of_stage, own in zip(chosen, rows, strict=True):
+                    for fraction, variant in of_stage[index]:
+                        self._pool(sums.until(variant, fraction), own.room())
+            return [own.filled() for own in rows]
+
+        every = range(len(samples))
+        parts = [every[start : start + PART] for start in every[::PART]]
+        of_parts = side_by_side(pooled, parts, "pooling of examples", progress)
         return [
-            PooledVectors(own.filled(), *np.array([(n, v) for n, each in enumerate(of_stage) for _, v in each]).T)
-            for own, of_stage in zip(rows, chosen, strict=True)
+            PooledVectors(
+                np.concatenate(own), *np.array([(n, v) for n, each in enumerate(of_stage) for _, v in each]).T
+            )
+            for own, of_stage in zip(zip(*of_parts, strict=True), chosen, strict=True)
         ]
 
     def of_background(

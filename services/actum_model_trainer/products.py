@@ -46,9 +46,9 @@ def solution(matrix: NDArray[np.float32], targets: Array) -> Array:
     """
     root = _Root(matrix)
     solved = root.solution(targets)
-    missed = np.concatenate(
-        [targets[rows] - matrix[rows].astype(np.float64) @ solved for rows in _blocks(len(matrix), LARGEST_AT_ONCE)]
-    )
+    missed = np.array(targets, dtype=np.float64)
+    for rows in _blocks(len(matrix), LARGEST_AT_ONCE):
+        missed[rows] -= matrix[rows].astype(np.float64) @ solved
     return solved + root.solution(missed)
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,7 @@ from actum_model_trainer.median_distances import median_quantization_error2
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import KeptError
 from actum_model_trainer.samples import LabelledStream, SegmentSample
+from actum_model_trainer.side_by_side import side_by_side
 from som_classifier.first_layer import MAP_INPUTS, FirstMaps, frame_inputs
 from som_classifier.model import NOTHING_KEPT, Arrays
 from som_classifier.presets import PyramidPreset
@@ -93,14 +93,14 @@ def _first_maps(
 ) -> FirstMaps:
     postures = np.concatenate([variant.postures for variant in augmented])
     frames = frame_inputs(postures, np.concatenate([variant.velocities for variant in augmented]))
-    maps, contrasts = {}, {}
-    for name, inputs_of in MAP_INPUTS.items():
-        rows = _training_rows(inputs_of(frames), rng)
-        untrained = Som.linear(*preset.units, rows)
-        maps[name] = untrained.train_batch(
-            rows, preset.unit_epochs, preset.unit_radius, partial(progress, f"map of {name}")
-        )
-        contrasts[name] = preset.relative_contrast * median_quantization_error2(maps[name], rows)
+    rows = {name: _training_rows(inputs_of(frames), rng) for name, inputs_of in MAP_INPUTS.items()}
+
+    def trained(name: str) -> tuple[Som, float]:
+        som = Som.linear(*preset.units, rows[name]).train_batch(rows[name], preset.unit_epochs, preset.unit_radius)
+        return som, preset.relative_contrast * median_quantization_error2(som, rows[name])
+
+    of_names = dict(zip(rows, side_by_side(trained, list(rows), "maps of the first layer", progress), strict=True))
+    maps, contrasts = ({name: each[number] for name, each in of_names.items()} for number in (0, 1))
     return FirstMaps(maps, contrasts, preset.arm_shares)
 
 
