@@ -35,6 +35,13 @@ def inner_products(vectors: NDArray[np.float32]) -> NDArray[np.float32]:
     return products
 
 
+def without_mean(vectors: NDArray[np.float32], mean: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return vectors (n, inputs) less their mean (inputs,)."""
+    result = np.empty_like(vectors)
+    side_by_side(lambda rows: np.subtract(vectors[rows], mean, out=result[rows]), blocks(len(vectors), SMALLEST_HALVED))
+    return result
+
+
 def solution(matrix: NDArray[np.float32], targets: Array) -> Array:
     """Return the solution (n, m) of matrix @ solution = targets, with a symmetric positive definite matrix (n, n).
 
@@ -47,7 +54,7 @@ def solution(matrix: NDArray[np.float32], targets: Array) -> Array:
     root = _Root(matrix)
     solved = root.solution(targets)
     missed = np.array(targets, dtype=np.float64)
-    for rows in _blocks(len(matrix), LARGEST_AT_ONCE):
+    for rows in blocks(len(matrix), LARGEST_AT_ONCE):
         missed[rows] -= matrix[rows].astype(np.float64) @ solved
     return solved + root.solution(missed)
 
@@ -59,7 +66,7 @@ class _Root:
     """
 
     def __init__(self, matrix: NDArray[np.float32]) -> None:
-        self._lower, self._blocks = matrix.copy(), _blocks(len(matrix), LARGEST_AT_ONCE)
+        self._lower, self._blocks = matrix.copy(), blocks(len(matrix), LARGEST_AT_ONCE)
         self._inverses = [self._factored(own) for own in self._blocks]
 
     def _factored(self, own: slice) -> NDArray[np.float32]:
@@ -80,7 +87,8 @@ class _Root:
         return solved.astype(np.float64)
 
 
-def _blocks(count: int, width: int) -> list[slice]:
+def blocks(count: int, width: int) -> list[slice]:
+    """Return slices of so many rows each, the last perhaps of fewer, that together hold all rows."""
     return [slice(start, min(start + width, count)) for start in range(0, count, width)]
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
-from actum_model_trainer.products import inner_products, inverse_root
+from actum_model_trainer.products import inner_products, inverse_root, without_mean
 
 SMALLEST_LENGTH2 = 1e-9
 """Squared length of vectors: the penalty must not be 0 where all are the same."""
@@ -50,7 +50,7 @@ class DualForm(NamedTuple):
     def of(cls, vectors: NDArray[np.float32], shrinkage: float) -> "DualForm":
         """Multiply vectors (n, inputs) less their mean; the penalty is `shrinkage` times their mean squared length."""
         mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
-        products = inner_products(vectors - mean)
+        products = inner_products(without_mean(vectors, mean))
         length2 = float(np.trace(products, dtype=np.float64)) / len(products)
         penalty = shrinkage * max(length2, SMALLEST_LENGTH2)
         products.ravel()[:: len(products) + 1] += penalty
