@@ -26,8 +26,8 @@ def inner_products(vectors: NDArray[np.float32]) -> NDArray[np.float32]:
     first, second = slice(0, count // 2), slice(count // 2, count)
     products = np.empty((count, count), np.float32)
 
-    def compute(blocks: Sequence[tuple[slice, slice]]) -> None:
-        for rows, columns in blocks:
+    def compute(pairs: Sequence[tuple[slice, slice]]) -> None:
+        for rows, columns in pairs:
             products[rows, columns] = vectors[rows] @ vectors[columns].T
 
     side_by_side(compute, [[(first, second)], [(first, first), (second, second)]])
@@ -45,8 +45,8 @@ def without_mean(vectors: NDArray[np.float32], mean: NDArray[np.float32]) -> NDA
 def solution(matrix: NDArray[np.float32], targets: Array) -> Array:
     """Return the solution (n, m) of matrix @ solution = targets, with a symmetric positive definite matrix (n, n).
 
-    Its factors in single precision solve the system to a few digits, and once more what that leaves of the targets.
-    Of inner products with a penalty, that leaves less than what rounded them.
+    Its factors in single precision solve the system to a few digits, and once more what that misses. That suffices for
+    inner products with a penalty: their condition is at most the number of vectors by the shrinkage.
 
     Raises:
         numpy.linalg.LinAlgError: rounding makes the matrix indefinite.
@@ -62,7 +62,7 @@ def solution(matrix: NDArray[np.float32], targets: Array) -> Array:
 class _Root:
     """The triangle L of L Lᵀ = a symmetric positive definite matrix (n, n), in single precision.
 
-    NumPy's `cholesky` takes as long for it as in double precision; most of this are products, which take half.
+    Nearly all of the work are products, which take half as long as in double precision. NumPy's own takes as long.
     """
 
     def __init__(self, matrix: NDArray[np.float32]) -> None:

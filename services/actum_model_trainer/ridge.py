@@ -89,7 +89,7 @@ class DualRidge:
         others[rows] = False
         intercept: Array = self._indicators.mean(axis=0, where=others) if others.any() else np.zeros(len(self.offsets))
         of_rows = self._dual[rows] + self._of_ones[rows] * (self._intercept - intercept)
-        own = self._root[rows.min(initial=0) :, rows]
+        own = self._root[rows.min(initial=len(self._root)) :, rows]
         scores: Array = self._indicators[rows] - np.linalg.solve(own.T @ own, of_rows)
         return scores
 
