@@ -124,4 +124,6 @@ def bone_scaling(factors: dict[str, float]) -> Array:
 
 def _applied(scaling: Array, vectors: Array) -> Array:
     """Scale vectors (n, 15, 3); a missing joint stays missing and affects no other."""
+    if not np.isnan(vectors).any():
+        return scaling @ vectors
     return np.where(np.isnan(vectors), np.nan, scaling @ np.nan_to_num(vectors))

@@ -11,12 +11,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from actum_model_trainer.products import blocks
+from actum_model_trainer.side_by_side import side_by_side
+
 Floats32 = NDArray[np.float32]
 
 LANDMARKS = 2
 """Vectors that each direction is found from: more show the directions hardly better, and n vectors cost n³."""
 SMALLEST_SHARE = 1e-6
 """Share of the landmarks' largest variance below which a direction is rounding error."""
+AT_ONCE = 512
+"""Vectors whose coordinates are computed at once, beside those of others."""
 LEAST_NEW_SHARE = 1e-5
 """Share of the variance of all vectors below which a direction that a basis lacks is what rounding left of others."""
 
@@ -67,8 +72,12 @@ class Basis:
 
     def coordinates(self, vectors: Floats32) -> Floats32:
         """Return the coordinates (n, rank) of vectors (n, inputs)."""
-        coordinates: Floats32 = vectors @ self.directions
-        coordinates -= self.mean @ self.directions
+        start, coordinates = self.mean @ self.directions, np.empty((len(vectors), self.rank), np.float32)
+
+        def compute(rows: slice) -> None:
+            np.subtract(vectors[rows] @ self.directions, start, out=coordinates[rows])
+
+        side_by_side(compute, blocks(len(vectors), AT_ONCE))
         return coordinates
 
     def moved(self, coordinates: Floats32, to: "Basis") -> Floats32:

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 
 from actum.arrays import Array
+from actum_model_trainer.basis import Basis, Floats32
 from actum_model_trainer.confidence import body_movement, inverse_temperatures
-from actum_model_trainer.convolution_training import blended
-from actum_model_trainer.discriminants import FittedStage, fit_discriminants
+from actum_model_trainer.convolution_training import Convolved, blended
+from actum_model_trainer.discriminants import Discriminants, FittedStage, fit_discriminants
 from actum_model_trainer.gathering import Taught, gathered
 from actum_model_trainer.kept import kept_arrays
 from actum_model_trainer.pooling import PooledVectors
@@ -71,11 +72,13 @@ def fitted_model(
         TrainingError: all samples move alike.
     """
     measures, targets, people = data.measures, data.targets, data.measures.everybody
-    fitted = _fitted_stages(data, preset.shrinkage, progress)
+    *of_stages, of_opinion, by_maps, by_convolutions = _discriminants(data, preset, progress)
+    samples = [stage.sample_indices for stage in data.stages]
+    fitted = [FittedStage(own, of, targets[of]) for own, of in zip(of_stages, samples, strict=True)]
     stages = _stage_discriminants(fitted, measures.log_durations, preset)
-    opinion, fitted[-1] = _with_opinion(fitted[-1], data, preset.convolutions)
+    opinion, fitted[-1] = _with_opinion(fitted[-1], of_opinion, data.convolved, preset.convolutions)
     upper = train_upper(fitted[-1], len(data.labels), preset, rng, progress)
-    verifier = trained_verifier(fitted[-1], data, preset)
+    verifier = trained_verifier(fitted[-1], by_maps, by_convolutions, data, preset)
     moved = measures.log_movements, measures.movements_m
     body = body_movement(*moved, targets, measures.people, preset.prior, people)
     inferred = bool(measures.depth_inferred.any())
@@ -91,26 +94,38 @@ def fitted_model(
     return PyramidModel(first, stages, opinion, verifier, body, upper.action_map, upper.layer3, described)
 
 
-def _fitted_stages(data: TrainingData, shrinkage: float, progress: Progress) -> list[FittedStage]:
-    """Fit the discriminants of each stage."""
-    indicators = np.eye(len(data.labels))
+def _discriminants(data: TrainingData, preset: PyramidPreset, progress: Progress) -> list[Discriminants]:
+    """Fit the discriminants of each stage, the second opinion's, and the verifier's on the maps and on convolutions."""
+    indicators, last, convolved = np.eye(len(data.labels)), data.stages[-1], data.convolved
+    on_maps, on_convolutions = (
+        (preset.shrinkage, data.pooled_basis),
+        (preset.convolutions.shrinkage, data.convolved_basis),
+    )
+    features = last._replace(vectors=convolved.taught)
 
-    def fitted(of_stage: PooledVectors) -> FittedStage:
-        vectors, sample_indices, _ = of_stage
-        targets = data.targets[sample_indices]
-        own = fit_discriminants(vectors, indicators[targets], data.folds[sample_indices], shrinkage)
-        return FittedStage(own.through(data.pooled_basis), sample_indices, targets)
+    def fitted(rows: tuple[PooledVectors, Floats32 | None, float, Basis | None]) -> Discriminants:
+        pooled, background, shrinkage, basis = rows
+        samples = pooled.sample_indices
+        of_rows = indicators[data.targets[samples]], data.folds[samples]
+        return fit_discriminants(pooled.vectors, *of_rows, shrinkage, background).through(basis)
 
-    return side_by_side(fitted, data.stages, "discriminant axes", progress)
+    return side_by_side(
+        fitted,
+        [
+            *((stage, None, *on_maps) for stage in data.stages),
+            (features, None, *on_convolutions),
+            (last, data.background, *on_maps),
+            (features, convolved.background, *on_convolutions),
+        ],
+        "discriminant axes",
+        progress,
+    )
 
 
 def _with_opinion(
-    fitted: FittedStage, data: TrainingData, preset: ConvolutionPreset
+    fitted: FittedStage, own: Discriminants, convolved: Convolved, preset: ConvolutionPreset
 ) -> tuple[SecondOpinion, FittedStage]:
     """Return the second opinion, and the last stage with scores in which it counts."""
-    indicators, convolved = np.eye(len(data.labels))[fitted.targets], data.convolved
-    folds = data.folds[fitted.sample_indices]
-    own = fit_discriminants(convolved.taught, indicators, folds, preset.shrinkage).through(data.convolved_basis)
     opinion = SecondOpinion(convolved.convolutions, convolved.axes(own), own.offsets, preset.opinion_weight)
     return opinion, replace(fitted, discriminants=blended(fitted.discriminants, own, preset.opinion_weight))
 

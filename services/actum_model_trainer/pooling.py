@@ -12,6 +12,7 @@ from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.progress import Progress, silent
 from actum_model_trainer.samples import SegmentSample
+from actum_model_trainer.side_by_side import side_by_side
 from som_classifier.first_layer import FirstMaps
 from som_classifier.frame_activity import UM_PER_M
 from som_classifier.pyramid import PrefixSums, Pyramid
@@ -32,6 +33,7 @@ class PooledVectors(NamedTuple):
 
 
 MAX_VECTORS = 2_000  # per stage, beyond one of each sample: more make the discriminants hardly better
+PART = 32  # samples that are pooled one after the other, beside others
 CHUNK = 256  # vectors that are reduced to coordinates at once
 MIN_FRAMES = 3  # of a share of an action: with fewer the live classifier gives no answer either
 
@@ -67,27 +69,41 @@ class Pooling:
             progress: of the pooling.
         """
         chosen = [_chosen(variants, fractions, beside + len(samples)) for fractions in stages]
-        rows = [Rows(self.basis, self._inputs, sum(map(len, of_stage))) for of_stage in chosen]
-        for index, (sample, of_sample) in enumerate(zip(samples, variants, strict=True)):
-            progress("pooling of examples", index, len(samples))
-            sums = _VariantSums(self, sample, of_sample)
-            for of_stage, own in zip(chosen, rows, strict=True):
-                for fraction, variant in of_stage[index]:
-                    self._pool(sums.until(variant, fraction), own.room())
-        progress("pooling of examples", len(samples), len(samples))
+        ends = [np.cumsum([0, *map(len, of_stage)]) for of_stage in chosen]
+        pooled = [self._room(of_stage[-1]) for of_stage in ends]
+
+        def pool(part: range) -> None:
+            bounds = [slice(of_stage[part.start], of_stage[part.stop]) for of_stage in ends]
+            rows = [Rows(self.basis, self._inputs, out[own]) for out, own in zip(pooled, bounds, strict=True)]
+            for index in part:
+                sums = _VariantSums(self, samples[index], variants[index])
+                for of_stage, own in zip(chosen, rows, strict=True):
+                    for fraction, variant in of_stage[index]:
+                        self._pool(sums.until(variant, fraction), own.room())
+            for own in rows:
+                own.finish()
+
+        every = range(len(samples))
+        side_by_side(pool, [every[start : start + PART] for start in every[::PART]], "pooling of examples", progress)
         return [
-            PooledVectors(own.filled(), *np.array([(n, v) for n, each in enumerate(of_stage) for _, v in each]).T)
-            for own, of_stage in zip(rows, chosen, strict=True)
+            PooledVectors(out, *np.array([(n, v) for n, each in enumerate(of_stage) for _, v in each]).T)
+            for out, of_stage in zip(pooled, chosen, strict=True)
         ]
 
     def of_background(
         self, windows: Sequence[SegmentSample], variants: Sequence[Sequence[Variant]]
     ) -> NDArray[np.float32]:
         """Return the vectors (windows, inputs) of movement that nobody taught, each of its only variant."""
-        rows = Rows(self.basis, self._inputs, len(windows))
+        pooled = self._room(len(windows))
+        rows = Rows(self.basis, self._inputs, pooled)
         for window, of_window in zip(windows, variants, strict=True):
             self._pool(_VariantSums(self, window, of_window).until(0, 1.0), rows.room())
-        return rows.filled()
+        rows.finish()
+        return pooled
+
+    def _room(self, count: int) -> NDArray[np.float32]:
+        """Return room for so many vectors, or for their coordinates."""
+        return np.empty((count, self._inputs if self.basis is None else self.basis.rank), np.float32)
 
     @property
     def _inputs(self) -> int:
@@ -110,12 +126,17 @@ def _chosen(
 
 
 class Rows:
-    """Room for vectors (n, inputs), or for their coordinates in a basis: then only a few vectors are held at once."""
+    """Writes vectors, or their coordinates in a basis: then only a few vectors are held at once.
 
-    def __init__(self, basis: Basis | None, inputs: int, count: int) -> None:
-        self._basis, self._written, self._reduced = basis, 0, 0
-        self._vectors = np.empty((count if basis is None else min(count, CHUNK), inputs), np.float32)
-        self._coordinates = np.empty((0 if basis is None else count, 0 if basis is None else basis.rank), np.float32)
+    Args:
+        basis: of the coordinates; None where vectors are written whole.
+        inputs: of a vector.
+        out: (n, inputs) or (n, rank), where they are written.
+    """
+
+    def __init__(self, basis: Basis | None, inputs: int, out: NDArray[np.float32]) -> None:
+        self._basis, self._out, self._written, self._reduced = basis, out, 0, 0
+        self._vectors = out if basis is None else np.empty((min(len(out), CHUNK), inputs), np.float32)
 
     def room(self) -> NDArray[np.float32]:
         """Return the room for the next vector, (1, inputs)."""
@@ -124,17 +145,15 @@ class Rows:
         self._written += 1
         return self._vectors[self._written - 1 : self._written]
 
-    def filled(self) -> NDArray[np.float32]:
-        """Return all, (n, inputs) or (n, rank)."""
-        if self._basis is None:
-            return self._vectors
-        self._reduce()
-        return self._coordinates
+    def finish(self) -> None:
+        """Write what is left to be written."""
+        if self._basis is not None:
+            self._reduce()
 
     def _reduce(self) -> None:
         assert self._basis is not None
         after = self._reduced + self._written
-        self._coordinates[self._reduced : after] = self._basis.coordinates(self._vectors[: self._written])
+        self._out[self._reduced : after] = self._basis.coordinates(self._vectors[: self._written])
         self._reduced, self._written = after, 0
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +17,7 @@ from actum_model_trainer.median_distances import median_quantization_error2
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import KeptError
 from actum_model_trainer.samples import LabelledStream, SegmentSample
+from actum_model_trainer.side_by_side import side_by_side
 from som_classifier.first_layer import MAP_INPUTS, FirstMaps, frame_inputs
 from som_classifier.model import NOTHING_KEPT, Arrays
 from som_classifier.presets import PyramidPreset
@@ -91,27 +91,27 @@ def _some(taught: Taught) -> list[Variant]:
 def _first_maps(
     augmented: Sequence[Variant], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> FirstMaps:
-    postures = np.concatenate([variant.postures for variant in augmented])
-    frames = frame_inputs(postures, np.concatenate([variant.velocities for variant in augmented]))
-    maps, contrasts = {}, {}
-    for name, inputs_of in MAP_INPUTS.items():
-        rows = _training_rows(inputs_of(frames), rng)
-        untrained = Som.linear(*preset.units, rows)
-        maps[name] = untrained.train_batch(
-            rows, preset.unit_epochs, preset.unit_radius, partial(progress, f"map of {name}")
-        )
-        contrasts[name] = preset.relative_contrast * median_quantization_error2(maps[name], rows)
+    frames = np.concatenate([frame_inputs(variant.postures, variant.velocities) for variant in augmented])
+    rows = {name: _training_rows(inputs_of(frames), rng) for name, inputs_of in MAP_INPUTS.items()}
+
+    def trained(name: str) -> tuple[Som, float]:
+        som = Som.linear(*preset.units, rows[name]).train_batch(rows[name], preset.unit_epochs, preset.unit_radius)
+        return som, preset.relative_contrast * median_quantization_error2(som, rows[name])
+
+    each = side_by_side(trained, list(rows), "maps of the first layer", progress)
+    maps = {name: som for name, (som, _) in zip(rows, each, strict=True)}
+    contrasts = {name: contrast for name, (_, contrast) in zip(rows, each, strict=True)}
     return FirstMaps(maps, contrasts, preset.arm_shares)
 
 
 def _training_rows(inputs: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
     """Return inputs (n, dim) as rows of float32 without those that are wholly missing, at most `MAX_ROWS` drawn evenly.
 
-    A component that is missing everywhere becomes 0: it is then the same for all units and decides nothing.
+    A component that is missing in all of them becomes 0: it is then the same for all units and decides nothing.
     """
-    flat = inputs.astype(np.float32)
-    flat = flat[~np.isnan(flat).all(axis=1)]
-    if not len(flat):
+    known = np.flatnonzero(~np.isnan(inputs).all(axis=1))
+    if not len(known):
         return np.zeros((1, inputs.shape[1]), np.float32)
-    flat = np.where(np.isnan(flat).all(axis=0), np.float32(0), flat)
-    return flat if len(flat) <= MAX_ROWS else flat[rng.choice(len(flat), MAX_ROWS, replace=False)]
+    drawn = known if len(known) <= MAX_ROWS else known[rng.choice(len(known), MAX_ROWS, replace=False)]
+    rows = inputs[drawn].astype(np.float32)
+    return np.where(np.isnan(rows).all(axis=0), np.float32(0), rows)

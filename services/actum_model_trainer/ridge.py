@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
-from actum_model_trainer.products import inner_products, inverse_root
+from actum_model_trainer.products import inner_products, inverse_root, without_mean
 
 SMALLEST_LENGTH2 = 1e-9
 """Squared length of vectors: the penalty must not be 0 where all are the same."""
@@ -44,14 +44,15 @@ class DualForm(NamedTuple):
     vectors: NDArray[np.float32]
     mean: NDArray[np.float32]
     penalty: float
-    products: Array
+    products: NDArray[np.float32]
 
     @classmethod
     def of(cls, vectors: NDArray[np.float32], shrinkage: float) -> "DualForm":
         """Multiply vectors (n, inputs) less their mean; the penalty is `shrinkage` times their mean squared length."""
         mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
-        products = inner_products(vectors - mean)
-        penalty = shrinkage * max(float(np.trace(products)) / len(products), SMALLEST_LENGTH2)
+        products = inner_products(without_mean(vectors, mean))
+        length2 = float(np.trace(products, dtype=np.float64)) / len(products)
+        penalty = shrinkage * max(length2, SMALLEST_LENGTH2)
         products.ravel()[:: len(products) + 1] += penalty
         return cls(vectors, mean, penalty, products)
 
@@ -70,22 +71,26 @@ class DualRidge:
 
     def __init__(self, vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> None:
         form = DualForm.of(vectors, shrinkage)
-        self._indicators, self._root = indicators, inverse_root(form.products)
+        self._indicators, self._root = indicators, inverse_root(form.products.astype(np.float64))
         intercept: Array = indicators.mean(axis=0)
-        self._dual: Array = self._root.T @ (self._root @ (indicators - intercept))
+        targets = np.column_stack([indicators - intercept, np.ones(len(indicators))])
+        of_all: Array = self._root.T @ (self._root @ targets)
+        self._dual, self._of_ones, self._intercept = of_all[:, :-1], of_all[:, -1:], intercept
         self.axes, self.offsets = form.fitted(self._dual, intercept)
         self.scores: Array = indicators - form.penalty * self._dual
 
     def held_out(self, rows: Indices) -> Array:
         """Return the scores (rows, actions) by a regression that was fitted to all other rows.
 
-        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted.
+        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted. With targets
+        t of all rows less an intercept, B_hf t_f = (B t)_h − B_hh t_h, so that all folds share one product B t.
         """
         others = np.ones((len(self._indicators), 1), dtype=bool)
         others[rows] = False
         intercept: Array = self._indicators.mean(axis=0, where=others) if others.any() else np.zeros(len(self.offsets))
-        targets, own = np.where(others, self._indicators - intercept, 0.0), self._root[:, rows]
-        scores: Array = intercept - np.linalg.solve(own.T @ own, own.T @ (self._root @ targets))
+        of_rows = self._dual[rows] + self._of_ones[rows] * (self._intercept - intercept)
+        own = self._root[rows.min(initial=len(self._root)) :, rows]
+        scores: Array = self._indicators[rows] - np.linalg.solve(own.T @ own, of_rows)
         return scores
 
     def each_left_out(self, count: int) -> Array:

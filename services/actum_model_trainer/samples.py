@@ -10,7 +10,7 @@ from actum.arrays import Array
 from actum.messages import NONE, Hand
 from actum_model_trainer.continuous.detections import Found, Stretch, Truth
 from actum_model_trainer.continuous.presence import LONGEST_BREAK_NS
-from som_classifier.handedness import LimbSpreads, limb_moments
+from som_classifier.handedness import acting_hands, limb_moments
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class SegmentSample:
     def acting_hands(self) -> list[Hand | None]:
         """For each frame, the side of the arm that has acted up to it; None for both arms or another limb."""
         summed = np.cumsum(limb_moments(self.postures), axis=0)
-        return [LimbSpreads.of(so_far).acting_hand for so_far in summed]
+        return acting_hands(np.zeros_like(summed), summed)
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from actum.arrays import Array
 from actum_model_trainer.confidence import averaged_with_prior, expected_log_errors
 from actum_model_trainer.convolution_training import blended
-from actum_model_trainer.discriminants import Discriminants, FittedStage, fit_discriminants
+from actum_model_trainer.discriminants import Discriminants, FittedStage
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
 from actum_model_trainer.training_data import TrainingData
 from som_classifier.presets import Prior, PyramidPreset
@@ -21,20 +21,19 @@ STRANGE_SHARE = 0.25
 that is taught."""
 
 
-def trained_verifier(labelled: FittedStage, data: TrainingData, preset: PyramidPreset) -> Verifier:
+def trained_verifier(
+    labelled: FittedStage, maps: Discriminants, convolutions: Discriminants, data: TrainingData, preset: PyramidPreset
+) -> Verifier:
     """Return a verifier that holds the actions against one another and against the background.
 
     Args:
         labelled: the complete actions, with the scores that name them.
+        maps: fitted to the pooled vectors of complete actions and background.
+        convolutions: fitted to the features of both.
         data: of the training.
         preset: with hyperparameters and the prior.
     """
-    indicators, convolved = np.eye(len(data.labels))[labelled.targets], data.convolved
-    of_row, measures = data.folds[labelled.sample_indices], data.measures
-    weight, shrinkage = preset.convolutions.verifier_weight, preset.convolutions.shrinkage
-    maps = fit_discriminants(data.stages[-1].vectors, indicators, of_row, preset.shrinkage, data.background)
-    convolutions = fit_discriminants(convolved.taught, indicators, of_row, shrinkage, convolved.background)
-    maps, convolutions = maps.through(data.pooled_basis), convolutions.through(data.convolved_basis)
+    convolved, measures, weight = data.convolved, data.measures, preset.convolutions.verifier_weight
     likenesses, people = Likenesses.of(labelled, blended(maps, convolutions, weight)), measures.everybody
     slope, intercept = verification(likenesses, preset.prior, people)
     return Verifier(

@@ -136,17 +136,13 @@ class FirstMaps:
             postures: (n, 15, 3), as for `activities`.
             velocities: (n, 15, 3).
         """
-        rows = frame_inputs(postures, velocities)
-        if steps is None or self.postures.dtype != np.float32 or np.isnan(rows).any():
+        missing = np.isnan(postures).any() or np.isnan(velocities).any()
+        if steps is None or self.postures.dtype != np.float32 or missing:
             return running_sums(self.activities(postures, velocities))
-        sums, sides = np.zeros((len(rows) + 1, self.units), np.uint32), (rows, mirrored_inputs(rows))
-        for number, channel in enumerate(CHANNELS):
-            som, inputs = self.maps[channel.map], MAP_INPUTS[channel.map](sides[channel.mirrored])
-            units, factors = len(som.weights), (float(self._slopes[number, 0]), float(self.shares[number, 0]), SCALE)
-            for chunk, scores in som.lookup.scores(inputs):
-                steps.added_channel(
-                    scores, scores.shape[1], units, *factors, sums, self.units, chunk.start, number * units
-                )
+        sums = np.zeros((len(postures) + 1, self.units), np.uint32)
+        frames = (np.ascontiguousarray(each, np.float64) for each in (postures, velocities))
+        shares = self.shares.tobytes()
+        steps.added_frames(*frames, *MIRRORED, *_MAP_INPUTS, *self._compiled, shares, SCALE, sums)
         return sums
 
     def winners(self, postures: Floats) -> NDArray[np.intp]:

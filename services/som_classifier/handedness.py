@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Mask, has_unknown
+from actum.arrays import Floats, Mask, has_unknown
 from actum.core import steps
 from actum.messages import Hand
 from actum.skeletons import INDEX, JOINTS
@@ -131,12 +131,29 @@ def left_handed(before: Integers, after: Integers) -> Mask:
         before: (n, 4, 8), the moments summed over all frames before each span.
         after: the same with those of the span.
     """
+    return _acts(_spreads(before, after), _LEFT_ARM, _RIGHT_ARM)
+
+
+def acting_hands(before: Integers, after: Integers) -> list[Hand | None]:
+    """Return the side of the arm that acts in each of n spans, as `LimbSpreads.acting_hand` says; see `left_handed`."""
+    limbs = _spreads(before, after)
+    arms = _acts(limbs, _LEFT_ARM, _RIGHT_ARM).tolist(), _acts(limbs, _RIGHT_ARM, _LEFT_ARM).tolist()
+    return ["left" if left else "right" if right else None for left, right in zip(*arms, strict=True)]
+
+
+def _spreads(before: Integers, after: Integers) -> Floats:
+    """Return each limb's spread in each of n spans, mm, (n, 4)."""
     moments = (after - before).astype(np.float64)
     counts = np.maximum(moments[..., 7], 1.0)
     means2 = np.square(moments[..., :6]).sum(axis=-1) / counts**2
-    limbs = np.sqrt(np.maximum(moments[..., 6] / counts - means2, 0.0))
-    left = limbs[:, _LEFT_ARM]
-    acts: Mask = (left == limbs.max(axis=1)) & (left + _JITTER_MM > _FACTOR * (limbs[:, _RIGHT_ARM] + _JITTER_MM))
+    spreads: Floats = np.sqrt(np.maximum(moments[..., 6] / counts - means2, 0.0))
+    return spreads
+
+
+def _acts(limbs: Floats, arm: int, other: int) -> Mask:
+    """Return where an arm moves most of all limbs (n, 4), and clearly more than the other arm, (n,)."""
+    own = limbs[:, arm]
+    acts: Mask = (own == limbs.max(axis=1)) & (own + _JITTER_MM > _FACTOR * (limbs[:, other] + _JITTER_MM))
     return acts
 
 

@@ -1090,42 +1090,74 @@ VECTORISED static void activities_of(const float *scores, float least, float slo
     }
 }
 
-static void add_channel(const float *scores, Py_ssize_t rows, Py_ssize_t stride, Py_ssize_t units, float slope, float share,
-                        float scale, uint32_t *sums, Py_ssize_t width, float *activity)
+/* The maps of the first layer and its channels, as the compiled steps read them; see `exponents`. */
+typedef struct {
+    const int32_t *mirror, *minuend, *subtrahend, *dims, *maps, *sides;
+    const double *signs, *weights;
+    const float *centre, *slopes, *half_norms2, *contrasts, *shares;
+    Py_ssize_t inputs, units, padded;
+    float scale;
+} Layer;
+
+/* Add up the quantised activities of two frames, of which the second may be left out: write the rows after `sums`. */
+static void add_frames(const Layer *layer, const double *postures, const double *velocities, int count, float *room,
+                       uint32_t *sums)
 {
-    for (Py_ssize_t row = 0; row < rows; row++, scores += stride, sums += width) {
-        activities_of(scores, least_of(scores, units), slope, activity, units);
-        add_quantised(activity, share / pairwise_sum(activity, units), scale, sums, sums + width, units);
+    float inputs[2][SIDES][MOST_INPUTS], *activity = room + 2 * layer->units;
+    Py_ssize_t units = layer->units, width = CHANNELS * units;
+    for (int frame = 0; frame < 2; frame++)
+        map_inputs(postures + frame % count * COORDINATES, velocities + frame % count * COORDINATES, layer->mirror, layer->signs,
+                   layer->minuend, layer->subtrahend, layer->weights, layer->centre, inputs[frame], layer->inputs);
+    for (int channel = 0; channel < CHANNELS; channel++) {
+        int map = layer->maps[channel], side = layer->sides[channel];
+        Py_ssize_t input = 0;
+        for (int before = 0; before < map; before++)
+            input += layer->dims[before];
+        (HAS_FUSED ? fused_products : rounded_products)(inputs[0][side] + input, inputs[1][side] + input,
+                                                        layer->slopes + input * layer->padded, layer->dims[map], units, room,
+                                                        room + units);
+        for (int frame = 0; frame < count; frame++) {
+            float *scores = room + frame * units;
+            uint32_t *row = sums + frame * width + channel * units;
+            add(scores, layer->half_norms2 + map * units, scores, units);
+            activities_of(scores, least_of(scores, units), layer->contrasts[channel], activity, units);
+            add_quantised(activity, layer->shares[channel] / pairwise_sum(activity, units), layer->scale, row, row + width, units);
+        }
     }
 }
 
-PyDoc_STRVAR(added_channel_doc,
-    "added_channel(scores, stride, units, slope, share, scale, sums, width, row, column)\n--\n\n"
-    "Add up the quantised activities of one channel for several frames, whose scores (frames, stride) are given:\n"
-    "write the columns from `column` on of the rows after `row` of sums (…, width), of which that row is known.");
-static PyObject *added_channel(PyObject *module, PyObject *args)
+PyDoc_STRVAR(added_frames_doc,
+    "added_frames(postures, velocities, mirror, signs, minuend, subtrahend, weights, dims, centre, slopes, half_norms2,\n"
+    "             maps, sides, contrasts, shares, scale, sums)\n--\n\n"
+    "Add up the quantised activities of many frames, of which no joint is missing: write all rows of sums but the\n"
+    "first, (frames + 1, channels * units).");
+static PyObject *added_frames(PyObject *module, PyObject *args)
 {
-    Py_buffer b[2];
-    Py_ssize_t stride, units, width, row, column;
-    float slope, share, scale;
-    if (!PyArg_ParseTuple(args, "y*nnfffw*nnn", &b[0], &stride, &units, &slope, &share, &scale, &b[1], &width, &row, &column))
+    Py_buffer b[16];
+    float scale;
+    if (!PyArg_ParseTuple(args, "y*y*y*y*y*y*y*y*y*y*y*y*y*y*y*fw*", &b[0], &b[1], &b[2], &b[3], &b[4], &b[5], &b[6], &b[7],
+                          &b[8], &b[9], &b[10], &b[11], &b[12], &b[13], &b[14], &scale, &b[15]))
         return NULL;
-    Py_ssize_t rows = stride > 0 ? b[0].len / (Py_ssize_t)sizeof(float) / stride : 0;
-    float *activity = PyMem_Malloc((units > 0 ? units : 0) * sizeof(float) + 1);
-    int fits = units > 0 && units <= stride && row >= 0 && column >= 0 && column + units <= width
-               && (row + rows + 1) * width * (Py_ssize_t)sizeof(uint32_t) <= b[1].len;
-    if (activity == NULL)
+    const double *postures = b[0].buf, *velocities = b[1].buf;
+    Py_ssize_t frames = b[0].len / (Py_ssize_t)sizeof(double) / COORDINATES, real = sizeof(float);
+    Py_ssize_t units = b[15].len / (Py_ssize_t)sizeof(uint32_t) / (frames + 1) / CHANNELS, padded = (units + BLOCK - 1) / BLOCK * BLOCK;
+    Layer layer = {b[2].buf, b[4].buf, b[5].buf, b[7].buf, b[11].buf, b[12].buf, b[3].buf, b[6].buf, b[8].buf, b[9].buf,
+                   b[10].buf, b[13].buf, b[14].buf, b[8].len / real, units, padded, scale};
+    float *room = PyMem_Malloc(3 * units * sizeof *room + 1);
+    if (room == NULL)
         PyErr_NoMemory();
-    else if (!fits)
-        PyErr_SetString(PyExc_ValueError, "there are fewer scores than units, or the sums have too few rows or columns");
+    else if (units < 1 || layer.inputs > MOST_INPUTS || b[1].len != b[0].len || b[9].len < layer.inputs * padded * real
+             || b[15].len != (frames + 1) * CHANNELS * units * (Py_ssize_t)sizeof(uint32_t))
+        PyErr_SetString(PyExc_ValueError, "more inputs than the compiled step has room for, or arrays of other lengths");
     else {
         Py_BEGIN_ALLOW_THREADS
-        add_channel(b[0].buf, rows, stride, units, slope, share, scale, (uint32_t *)b[1].buf + row * width + column, width,
-                    activity);
+        for (Py_ssize_t first = 0; first < frames; first += 2)
+            add_frames(&layer, postures + first * COORDINATES, velocities + first * COORDINATES, first + 1 < frames ? 2 : 1, room,
+                       (uint32_t *)b[15].buf + first * CHANNELS * units);
         Py_END_ALLOW_THREADS
     }
-    PyMem_Free(activity);
-    return released(b, 2);
+    PyMem_Free(room);
+    return released(b, 16);
 }
 
 VECTORISED static double dot(const double *x, const double *y, Py_ssize_t n)
@@ -1641,7 +1673,7 @@ static PyObject *learned(PyObject *module, PyObject *args)
 static PyMethodDef methods[] = {
     {"adapted", adapted, METH_VARARGS, adapted_doc},
     {"added", added, METH_VARARGS, added_doc},
-    {"added_channel", added_channel, METH_VARARGS, added_channel_doc},
+    {"added_frames", added_frames, METH_VARARGS, added_frames_doc},
     {"body", body, METH_VARARGS, body_doc},
     {"bounds", bounds, METH_VARARGS, bounds_doc},
     {"centred", centred, METH_VARARGS, centred_doc},

@@ -92,7 +92,7 @@ def test_answers_are_those_of_the_live_classifier_to_the_bit(
     assert sum(p.predicted is not None for p in live) >= 14
 
 
-@pytest.mark.parametrize(("preset", "first"), [(TINY, "map of postures"), (TINY_PAPER, "layer 1")])
+@pytest.mark.parametrize(("preset", "first"), [(TINY, "maps of the first layer"), (TINY_PAPER, "layer 1")])
 def test_each_person_is_tested_once_on_a_model_of_the_others(
     three_people: list[Recording], preset: Preset, first: str
 ) -> None:

@@ -41,9 +41,13 @@ def ill_conditioned(count: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize("count", [1, 5, 128, 129, 700])
-def test_a_system_of_equations_is_solved_however_much_vectors_have_in_common(count: int) -> None:
-    matrix, expected = ill_conditioned(count), np.random.default_rng(0).random((count, 3))
-    np.testing.assert_allclose(solution(matrix, matrix @ expected), expected, rtol=0, atol=1e-6)
+def test_a_system_of_equations_is_solved_even_where_all_vectors_lie_on_a_line(count: int) -> None:
+    """The condition of inner products with a penalty is largest there: the number of vectors by the shrinkage."""
+    rng = np.random.default_rng(count)
+    along = rng.normal(size=count)
+    matrix = (np.outer(along, along) + SHRINKAGE * np.square(along).mean() * np.eye(count)).astype(np.float32)
+    expected = rng.random((count, 3))
+    np.testing.assert_allclose(solution(matrix, matrix.astype(np.float64) @ expected), expected, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("count", [1, 5, 128, 129, 700])

@@ -283,6 +283,13 @@ def spotting_of(samples: Samples) -> Model:
     return train_to_spot(samples.usable, samples.streams, TINY)
 
 
+def reported(samples: Samples) -> list[tuple[str, int]]:
+    """What a training reports: each stage, and how much of it is done."""
+    stages: list[tuple[str, int]] = []
+    train_to_spot(samples.usable, samples.streams, TINY, progress=lambda stage, done, _: stages.append((stage, done)))
+    return stages
+
+
 def found_in(model: Model, of: Scene) -> list[tuple[int, int, str]]:
     spotter = model.spotter(SpottingOptions())
     assert spotter is not None
@@ -299,6 +306,14 @@ def test_whole_clips_teach_a_search_that_says_that_it_has_seen_no_background(tmp
     model = spotting_of(taught_by(tmp_path, *clips, people=2))
     assert model.background_s == 0.0
     found_in(model, scene(seed=9))
+
+
+def test_heads_are_trained_again_on_false_alarms_only_where_there_is_background(tmp_path: Path) -> None:
+    clips = taught_by(tmp_path / "clips", *(clip(action, seed) for seed in range(4) for action in LABELS), people=2)
+    streams = taught_by(tmp_path / "streams", *(shown(*LABELS * 2, seed=seed) for seed in range(2)))
+    for samples, times in ((clips, 1), (streams, 2)):
+        begun = [stage for stage, done in reported(samples) if stage == "windows of streams" and done == 0]
+        assert len(begun) == times
 
 
 def test_the_fewer_people_the_nearer_the_threshold_is_to_the_priors() -> None:

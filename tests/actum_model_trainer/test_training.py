@@ -12,6 +12,7 @@ from actum_model_trainer.sample_reading import samples_from
 from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
 from performers import HAND_PATHS, TINY, TINY_OF_EACH_KIND, TINY_PAPER
+from som_classifier.first_layer import MAP_INPUTS
 from som_classifier.model import Model
 from som_classifier.presets import Preset
 
@@ -81,17 +82,13 @@ def test_fewer_than_two_actions_are_refused(samples: list[SegmentSample], preset
         train([sample for sample in samples if sample.label in known], preset)
 
 
-EXAMPLES = 18
-"""Of three people, each of whom does three actions twice."""
 STAGES_OF_TRAINING = [
     (
         TINY,
         [
-            ("map of postures", TINY.unit_epochs),
-            ("map of velocities", TINY.unit_epochs),
-            ("map of arms", TINY.unit_epochs),
-            ("pooling of examples", EXAMPLES),
-            ("discriminant axes", len(TINY.stages)),
+            ("maps of the first layer", len(MAP_INPUTS)),
+            ("pooling of examples", 1),
+            ("discriminant axes", len(TINY.stages) + 3),
             ("map of actions", TINY.concept_epochs),
             ("neurons", TINY.epochs),
         ],

@@ -169,10 +169,12 @@ def test_a_frame_adds_the_same_to_all_sums(seed: int) -> None:
 
 @settings(deadline=None, max_examples=10)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1, 127, 300]), st.floats(0.01, 30.0))
-def test_many_frames_add_the_same_to_all_sums(seed: int, frames: int, far_m: float) -> None:
+def test_many_frames_add_to_all_sums_what_each_does_alone(seed: int, frames: int, far_m: float) -> None:
     """But for steps of the quantisation where an activity lies between two; also far from all units."""
     postures, velocities = np.random.default_rng(seed).normal(0, far_m, (2, frames, 15, 3))
-    sums = both(lambda: spotting_model().first.running_sums(postures, velocities))
+    first = spotting_model().first
+    alone = [first.frame_activities(*frame)[0] for frame in zip(postures, velocities, strict=True)]
+    sums = first.running_sums(postures, velocities), running_sums(np.stack(alone))
     steps_of_each = [np.diff(each.astype(np.int64), axis=0) for each in sums]
     assert np.abs(steps_of_each[0] - steps_of_each[1]).max(initial=0) <= 1
     assert not sums[0][0].any()
@@ -337,6 +339,12 @@ def add_frame(row: int) -> None:
     steps.added(activities, np.ones(4, np.float32), 1.0, *frame, 1e-9, sums, totals, row)
 
 
+def add_frames(moving: int = 3, inputs: int = 1, sums: tuple[int, int] = (4, 4)) -> None:
+    """Add three frames to sums of a layer of one unit, which has weights for one input."""
+    layer = (*(ZEROS,) * 6, np.zeros(inputs, np.float32), np.zeros(32, np.float32), *(ZEROS,) * 5)
+    steps.added_frames(np.zeros((3, 45)), np.zeros((moving, 45)), *layer, 1.0, np.zeros(sums, np.uint32))
+
+
 @pytest.mark.parametrize(
     "call",
     [
@@ -352,9 +360,10 @@ def add_frame(row: int) -> None:
         lambda: pooled_by(spans=[[1, 1]]),
         lambda: pooled_by(spans=[[0, 2], [0, 1]]),
         lambda: pooled_by(spans=[[0, 2]], frames=1),
-        lambda: steps.added_channel(np.zeros((2, 3), np.float32), 3, 4, 1, 1, 1, np.zeros((3, 8), np.uint32), 8, 0, 0),
-        lambda: steps.added_channel(np.zeros((2, 3), np.float32), 3, 3, 1, 1, 1, np.zeros((2, 8), np.uint32), 8, 0, 0),
-        lambda: steps.added_channel(np.zeros((2, 3), np.float32), 3, 3, 1, 1, 1, np.zeros((3, 8), np.uint32), 8, 0, 6),
+        lambda: add_frames(sums=(3, 4)),
+        lambda: add_frames(sums=(4, 3)),
+        lambda: add_frames(moving=2),
+        lambda: add_frames(inputs=136),
         lambda: steps.adapted(np.ones((2, 3)), np.ones((4, 3)), np.zeros(4, np.int64), np.array([4]), 0.1),
         lambda: steps.adapted(np.ones((2, 3)), np.ones((4, 4)), np.zeros(4, np.int64), np.array([0]), 0.1),
         lambda: steps.bounds(np.empty((0, 3)), np.empty((2, 3))),

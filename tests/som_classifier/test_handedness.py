@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from actum.skeletons import INDEX, JOINTS
 from people import STANDING
-from som_classifier.handedness import LimbSpreads, left_handed, limb_moments, mirrored
+from som_classifier.handedness import LimbSpreads, acting_hands, left_handed, limb_moments, mirrored
 
 LIMBS = ("right arm", "left arm", "right leg", "left leg")
 ENDS = ("right_hand", "left_hand", "right_foot", "left_foot")
@@ -126,12 +126,14 @@ def test_no_frame_is_no_movement() -> None:
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.02, 0.1]))
-def test_of_many_spans_the_same_are_left_handed_as_of_each_alone(seed: int, more_m: float) -> None:
+def test_of_many_spans_the_same_hands_act_as_of_each_alone(seed: int, more_m: float) -> None:
     rng = np.random.default_rng(seed)
     postures = acting(seed) * 0.1 + swaying(left_hand=more_m)[:30]
     postures[rng.random(30) < 0.2, INDEX["right_hand"]] = np.nan
     moments = limb_moments(postures)
     summed = np.concatenate([np.zeros_like(moments[:1]), np.cumsum(moments, axis=0)])
     firsts, afters = np.sort(rng.integers(0, 31, (50, 2)), axis=1).T
-    expected = [LimbSpreads.between(*each).left_handed for each in zip(summed[firsts], summed[afters], strict=True)]
-    assert left_handed(summed[firsts], summed[afters]).tolist() == expected
+    spans = summed[firsts], summed[afters]
+    expected = [LimbSpreads.between(*each).acting_hand for each in zip(*spans, strict=True)]
+    assert acting_hands(*spans) == expected
+    assert left_handed(*spans).tolist() == [hand == "left" for hand in expected]

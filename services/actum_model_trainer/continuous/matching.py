@@ -9,6 +9,7 @@ truths, given twice, would be right twice.
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from operator import itemgetter
 
 from actum_model_trainer.continuous.detections import Detection, Interval, Truth
 
@@ -46,10 +47,11 @@ def claims(detections: Iterable[Detection], truths: Iterable[Truth], fit: Fit) -
     for truth in sorted(truths, key=lambda truth: (truth.start_ns, truth.end_ns, truth.point_ns or 0)):
         same[truth.file, truth.agent, truth.label].append(truth)
     for detection in detections:
-        fits = [(fit(detection, truth), truth) for truth in same[detection.file, detection.agent, detection.label]]
-        possible = [Match(detection, truth, value) for value, truth in fits if value is not None]
+        alike = same[detection.file, detection.agent, detection.label]
+        possible = [(value, truth) for truth in alike if (value := fit(detection, truth)) is not None]
         if possible:
-            yield max(possible, key=lambda match: match.fit)
+            value, truth = max(possible, key=itemgetter(0))
+            yield Match(detection, truth, value)
 
 
 def overlap_ns(first: Interval, second: Interval) -> int:
@@ -59,6 +61,8 @@ def overlap_ns(first: Interval, second: Interval) -> int:
 
 def intersection_over_union(detection: Detection, truth: Truth) -> float | None:
     """Return the temporal overlap (IoU), 0 to 1; None where they have no time in common."""
+    if detection.end_ns <= truth.start_ns or truth.end_ns <= detection.start_ns:
+        return None  # nearly all are so far apart
     common_ns = overlap_ns(detection, truth)
     if common_ns <= 0:
         return None

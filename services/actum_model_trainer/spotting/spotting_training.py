@@ -88,7 +88,9 @@ def _with_false_alarms(
     rng: np.random.Generator,
     progress: Progress,
 ) -> list[TrainingWindows]:
-    """Add windows about what heads that are trained on the others take for actions in background."""
+    """Add windows about what heads that are trained on the others take for actions in background, if there is any."""
+    if not untuned.background_s:
+        return list(windows)
     search = preset.spotting
     few = min(search.most_windows, FIRST_VARIANTS * sum(len(each.frames) for each in windows))
     less_varied = replace(preset, spotting=replace(search, most_windows=few))

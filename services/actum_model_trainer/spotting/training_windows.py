@@ -116,15 +116,18 @@ def live_windows(stamps_ns: Stamps, durations_ns: Stamps, interval_ns: int) -> I
     gaps = np.flatnonzero(np.diff(stamps_ns) > GAP_NS) + 1
     run_starts = np.zeros(len(stamps_ns), dtype=np.intp)
     run_starts[gaps] = gaps
-    found, next_ns = [], 0
-    for last, (now_ns, run_start) in enumerate(zip(stamps_ns.tolist(), np.maximum.accumulate(run_starts), strict=True)):
-        if now_ns < next_ns and run_start < last:
-            continue
-        next_ns = now_ns + interval_ns
-        firsts = np.maximum(np.searchsorted(stamps_ns, now_ns - durations_ns), run_start)
-        covered = now_ns - stamps_ns[firsts] >= LIVE_COVERED_SHARE * durations_ns
-        found += [(first, last) for first in firsts[covered & (last - firsts + 1 >= FEWEST_FRAMES)].tolist()]
-    return np.array(found, dtype=np.intp).reshape(-1, 2)
+    run_starts = np.maximum.accumulate(run_starts)
+    lasts, next_ns = [], 0
+    for last, (now_ns, run_start) in enumerate(zip(stamps_ns.tolist(), run_starts.tolist(), strict=True)):
+        if now_ns >= next_ns or run_start == last:
+            next_ns = now_ns + interval_ns
+            lasts.append(last)
+    ends = np.array(lasts, dtype=np.intp)[:, None]
+    firsts = np.searchsorted(stamps_ns, stamps_ns[ends] - durations_ns)
+    firsts = np.maximum(firsts, run_starts[ends])
+    covered = stamps_ns[ends] - stamps_ns[firsts] >= LIVE_COVERED_SHARE * durations_ns
+    usable = covered & (ends - firsts + 1 >= FEWEST_FRAMES)
+    return np.stack([firsts[usable], np.broadcast_to(ends, firsts.shape)[usable]], axis=1)
 
 
 def overlap_ratio(starts_ns: Stamps, ends_ns: Stamps, start_ns: int, end_ns: int) -> Array:
