@@ -49,6 +49,7 @@ RESULTS = {
     "Latency": "benchmarks/latency/results",
     "Many sensors": "benchmarks/many/results",
     "Latency and speed: what was tried": "benchmarks/latency/README",
+    "Training: what was tried": "benchmarks/latency/training",
     "Maps": "benchmarks/som",
 }
 PROJECT = ["deploy/README", "CONTRIBUTING", "CHANGELOG", "SECURITY"]
