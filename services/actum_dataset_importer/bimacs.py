@@ -215,10 +215,7 @@ def _labels(folder: Path, person: str, take: str) -> list[Label]:
         content = json.loads(files[0].read_text())
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise DatasetError(
-            f"{files[0]} is damaged ({error!r}): each hand needs a list in which frame numbers and labels alternate. "
-            "Download the file again"
-        ) from None
+        raise DatasetError(f"{files[0]} is damaged ({error!r}): download the file again") from None
 
 
 def _hand_labels(hand: Hand, content: list[Any]) -> list[Label]:
