@@ -73,24 +73,22 @@ class DualRidge:
         form = DualForm.of(vectors, shrinkage)
         self._indicators, self._root = indicators, inverse_root(form.products.astype(np.float64))
         intercept: Array = indicators.mean(axis=0)
-        targets = np.column_stack([indicators - intercept, np.ones(len(indicators))])
-        of_all: Array = self._root.T @ (self._root @ targets)
-        self._dual, self._of_ones, self._intercept = of_all[:, :-1], of_all[:, -1:], intercept
+        self._dual: Array = self._root.T @ (self._root @ (indicators - intercept))
         self.axes, self.offsets = form.fitted(self._dual, intercept)
         self.scores: Array = indicators - form.penalty * self._dual
 
     def held_out(self, rows: Indices) -> Array:
         """Return the scores (rows, actions) by a regression that was fitted to all other rows.
 
-        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted. With targets
-        t of all rows less an intercept, B_hf t_f = (B t)_h − B_hh t_h, so that all folds share one product B t.
+        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted. What these
+        rows indicate is left out to the last bit, and not just up to rounding as by one product for all folds.
         """
         others = np.ones((len(self._indicators), 1), dtype=bool)
         others[rows] = False
         intercept: Array = self._indicators.mean(axis=0, where=others) if others.any() else np.zeros(len(self.offsets))
-        of_rows = self._dual[rows] + self._of_ones[rows] * (self._intercept - intercept)
-        own = self._root[rows.min(initial=len(self._root)) :, rows]
-        scores: Array = self._indicators[rows] - np.linalg.solve(own.T @ own, of_rows)
+        first = rows.min(initial=len(self._root))  # above it, these columns of the root are 0
+        targets, own = np.where(others, self._indicators - intercept, 0.0), self._root[first:, rows]
+        scores: Array = intercept - np.linalg.solve(own.T @ own, own.T @ (self._root[first:] @ targets))
         return scores
 
     def each_left_out(self, count: int) -> Array:

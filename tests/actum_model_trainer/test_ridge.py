@@ -40,7 +40,7 @@ def ill_conditioned(count: int) -> np.ndarray:
     return vectors @ vectors.T + np.eye(count)
 
 
-@pytest.mark.parametrize("count", [1, 5, 128, 129, 700])
+@pytest.mark.parametrize("count", [1, 5, 128, 129, 700, 2500])
 def test_a_system_of_equations_is_solved_even_where_all_vectors_lie_on_a_line(count: int) -> None:
     """The condition of inner products with a penalty is largest there: the number of vectors by the shrinkage."""
     rng = np.random.default_rng(count)
