@@ -56,7 +56,7 @@ class TcpProxy:
 
     @property
     def carried_bytes(self) -> tuple[int, int]:
-        """Bytes that have been delivered so far: to the target, and from it."""
+        """Bytes that have been delivered so far, those being delivered included: to the target, and from it."""
         return self._bytes_to_target, self._bytes_from_target
 
     @property
@@ -194,11 +194,11 @@ class _Direction:
             self._changed.notify_all()
 
     def _sent(self, chunk: bytes) -> bool:
+        self._proxy._carried(len(chunk), self._to_target)  # first, so that who has received bytes finds them counted
         try:
             self._sink.sendall(chunk)
         except OSError:
             return False
-        self._proxy._carried(len(chunk), self._to_target)
         return True
 
 
