@@ -152,7 +152,7 @@ def _time_to_contact(unit: Array, examples: Examples) -> dict[str, Array]:
     inputs = np.pad(unit[soon][examples.touched[soon] > 0], ((0, 0), (0, 1)), constant_values=1.0).astype(np.float64)
     logs, worth = np.log(np.maximum(examples.ahead_s[soon], 0.02)), examples.weights[soon][:, None]
     time = np.linalg.solve(inputs.T @ (inputs * worth) + np.eye(inputs.shape[1]), inputs.T @ (logs * worth[:, 0]))
-    return {"time": time, "time_sd": np.std(logs - inputs @ time)}
+    return {"time": time, "time_sd": np.array(np.std(logs - inputs @ time))}
 
 
 def acting_takes() -> list[Take]:

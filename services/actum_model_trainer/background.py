@@ -43,7 +43,9 @@ def save(streams: Sequence[LabelledStream], path: Path) -> None:
     whole = {name: np.rint(PER_M * np.concatenate(of_streams)).astype(np.int16) for name, of_streams in arrays.items()}
     stamps_ns = [stream.stamps_ns[::STEP] for stream in streams]
     with replaced(path) as file:
-        np.savez_compressed(file, frames=list(map(len, stamps_ns)), stamps_ns=np.concatenate(stamps_ns), **whole)
+        np.savez_compressed(
+            file, frames=list(map(len, stamps_ns)), stamps_ns=np.concatenate(stamps_ns), allow_pickle=False, **whole
+        )
 
 
 @cache

@@ -89,7 +89,7 @@ class Convolutions:
             steps.exceeding(inputs, SMALL_KERNELS, DILATED, WEIGHTS, biases, COUNTED_NUMBERS, COUNTS, compiled)
             return compiled
         exceeds = _packed(self.responses(series)[:, None, :] > self.biases[:, :, None])
-        shares: Floats32 = np.bitwise_count(exceeds & PACKED[:, None]) / COUNTS[:, None]
+        shares: Floats32 = np.divide(np.bitwise_count(exceeds & PACKED[:, None]), COUNTS[:, None], dtype=np.float32)
         return shares.ravel()
 
 

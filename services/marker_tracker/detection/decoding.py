@@ -183,7 +183,7 @@ def _read_in_place(pixels: Pixels, markers: Sequence[Marker], family: Family) ->
     shows_code = (wrong <= family.corrected) & (_correlation(levels, patterns) >= MIN_CORRELATION)
     (index,) = np.nonzero(shows_code & aligned.converged & (aligned.covered <= MAX_COVERED_CLEAR))
     centres_px = aligned.corners_px.mean(axis=1)
-    return [_moved(*before[at], aligned, at, centres_px[at], int(wrong[at])) for at in index.tolist()]
+    return [_moved(*before[at], aligned, at, centres_px[at], int(wrong[at])) for at in map(int, index)]
 
 
 def _moved(marker: Marker, start: AlignmentStart, aligned: Alignment, at: int, centre_px: Array, wrong: int) -> Marker:
