@@ -11,7 +11,7 @@ PYTHONS ?= python3.11 python3.12 python3.13
 LOCK := $(BIN)/uv pip compile --quiet --no-header --no-annotate --generate-hashes --python-version 3.11 --python-platform linux $(UPGRADE)
 LOCKS := deploy/requirements
 
-.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench check-speed bench-camera bench-camera-continuous bench-camera-latency bench-continuation bench-continuous bench-growth bench-intent bench-many bench-maps bench-recognition bench-objects bench-page bench-paper bench-ros4hri bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
+.PHONY: install demo first-event simulated-model up test test-thorough test-pythons fuzz soak test-browser test-long test-data test-live test-chaos test-containers test-viewers check bench check-speed bench-camera bench-camera-continuous bench-camera-latency bench-continuation bench-continuous bench-growth bench-intent bench-many bench-maps bench-recognition bench-objects bench-page bench-paper bench-ros4hri bench-teaching bench-tracker chaos picture picture-teaching picture-viewer screenshots page-libraries pages docs schemas wheel lock clean
 .DEFAULT_GOAL := demo
 
 install: $(STAMP)  ## make .venv with everything
@@ -158,6 +158,9 @@ bench-page: $(STAMP)  ## what the page costs with several browsers, some minutes
 bench-ros4hri: $(STAMP)  ## ROS4HRI: what its topics cost, how rightly postures are told, and answers to bodies that came back, five minutes
 	@test -d "$$ACTUM_DATA" || { echo "bench-ros4hri needs ACTUM_DATA: the folder that holds msr_action3d/" >&2; exit 1; }
 	$(BIN)/python -m benchmarks.ros4hri
+
+bench-teaching: $(STAMP)  ## whether takes end by themselves on the page of a busy machine, ten times three actions, a quarter of an hour; needs Chromium
+	$(BIN)/python -m benchmarks.teaching_on_page
 
 bench-tracker: $(STAMP)  ## what the marker tracker costs for an image and how exact it is, beside OpenCV, about ten minutes
 	$(BIN)/python -m benchmarks.tracker
