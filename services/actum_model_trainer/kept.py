@@ -143,7 +143,7 @@ def kept_data(arrays: Arrays, model: PyramidModel) -> TrainingData:
         assert pooled is not None and features is not None
         inputs = len(pooled.directions), len(features.directions)
         if data.labels != model.labels or inputs != (model.stages.axes.shape[1], len(model.opinion.axes)):
-            raise KeptError(f"the training data in the model file belongs to another model: {TRAIN_AGAIN}")
+            raise KeptError(f"the file's training data fits another model (other actions or sizes): {TRAIN_AGAIN}")
         _expect_whole(data, pooled, features)
     return data
 

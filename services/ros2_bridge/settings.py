@@ -59,7 +59,8 @@ class Settings(ServiceSettings):
     ros_hri_mapping: Path | None = Field(
         None,
         description=(
-            "a YAML file that says which actions are gestures and intents in the words of ROS4HRI; default: none are"
+            "a YAML file that says which actions ROS4HRI's topics of gestures and of intents name; default: no action "
+            "is a gesture or an intent"
         ),
     )
     ros_frame_id: str | None = Field(

@@ -53,8 +53,8 @@ class Settings(ServiceSettings):
     page_guarded: bool = Field(
         False,
         description=(
-            "let others than this machine open the web page without --page-token. Use this only if access is "
-            "restricted in another way: in a container, for example, whose host publishes the port on 127.0.0.1 only"
+            "allow other machines to open the web page even though no --page-token is set. Use this only if something "
+            "else restricts access: for example, in a container, if the host publishes the port on 127.0.0.1 only"
         ),
     )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(

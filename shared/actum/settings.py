@@ -148,8 +148,8 @@ class ServiceSettings(BaseSettings):
     credentials: Path | None = Field(
         None,
         description=(
-            "the folder with the certificate and key of this program, as written by `actum deploy`, such as "
-            "people/viewer for the programs of a person who only watches; needs --connect tls/host:port"
+            "the folder with this program's certificate and key. `actum deploy` writes one folder for each role: a "
+            "program that only watches uses people/viewer. Needs --connect tls/host:port"
         ),
     )
     health_file: Path | None = Field(

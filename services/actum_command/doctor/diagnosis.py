@@ -64,7 +64,7 @@ def who_serves(heard: Heard) -> Iterator[str]:
         serving = heard.tokens.get(service, [])
         others = sorted(set(members) - set(serving))
         standing_by = f"; standing by: {', '.join(others)}" if others else ""
-        yield f"{service}, which is shared: {', '.join(serving) or 'nobody yet'} serves this sensor{standing_by}"
+        yield f"{service} is shared; it is run for this sensor by: {', '.join(serving) or 'nobody yet'}{standing_by}"
 
 
 def everything_denied(heard: Heard, client: Client) -> str | None:
