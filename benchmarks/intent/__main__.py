@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
-from benchmarks.intent import cad120, habits, pairs
+from benchmarks.intent import boxes, habits, pairs
 from benchmarks.intent.learning import (
     CAPTURED_WEIGHT,
     EVERYDAY_WEIGHT,
@@ -135,7 +135,7 @@ def of_habits(_folder: Path | None) -> Iterator[str]:
 def of_cad120(folder: Path | None) -> Iterator[str]:
     """Yield the table of reaches whose objects are known by their boxes alone."""
     near = None if folder is None else folder.with_name("cad120")
-    yield from ["Not run: there is no such folder."] if near is None or not near.is_dir() else cad120.table(near)
+    yield from ["Not run: there is no such folder."] if near is None or not near.is_dir() else boxes.table(near)
 
 
 def of_cost(_folder: Path | None) -> Iterator[str]:
