@@ -79,12 +79,12 @@ def _cells(right: Mask, chosen: Mask) -> Sequence[str]:
     cells = []
     for other, ours in zip(right, chosen, strict=True):
         only = int((ours & ~other).sum()), int((other & ~ours).sum())
-        compared = ["", ""] if right is chosen else [f"{only[0]}, {only[1]}", f"{_mcnemar(*only):.2f}"]
+        compared = ["", ""] if right is chosen else [f"{only[0]}, {only[1]}", f"{mcnemar_p(*only):.2f}"]
         cells += [f"{other.mean():.2f}", *compared]
     return cells
 
 
-def _mcnemar(only_ours: int, only_theirs: int) -> float:
+def mcnemar_p(only_ours: int, only_theirs: int) -> float:
     """Return the probability that, of two methods that are right as often, one alone is right so unequally often."""
     count = only_ours + only_theirs
     tail = sum(math.comb(count, k) for k in range(min(only_ours, only_theirs) + 1))
