@@ -1,4 +1,7 @@
-"""How sure a network of contacts may be: surer of those who act all the time than of those who do other things."""
+"""How sure a network of contacts may be: surer of those who act all the time than of those who do other things.
+
+A person acts as often among many objects as among few.
+"""
 
 from typing import NamedTuple
 
@@ -9,15 +12,20 @@ from actum.arrays import Array
 POSSIBLE = 0.03
 """A contact of this probability is thought possible; instants without one are left out."""
 NEWTON_STEPS = 8
-"""More than enough for three numbers."""
+"""More than enough for four numbers."""
 
 
 class Balance(NamedTuple):
-    """Changes a score to `scale` times the score, plus `offset`, plus `lively` times log(1 + how many have begun)."""
+    """Changes a score to `scale` times the score, plus `offset`.
+
+    To that comes `lively` times log(1 + how many have begun), and `among` times the logarithm of how many objects there
+    are.
+    """
 
     scale: float
     offset: float
     lively: float
+    among: float
 
 
 def balance(scores: Array, touched: Array, weights: Array, begun: Array) -> Balance:
@@ -33,8 +41,9 @@ def balance(scores: Array, touched: Array, weights: Array, begun: Array) -> Bala
     scores, touched, weights, begun = scores[kept], touched[kept], weights[kept], begun[kept]
     there = np.isfinite(scores)
     known = np.where(there, scores, 0.0)
-    inputs = np.stack([known, np.ones_like(known), np.broadcast_to(np.log1p(begun)[:, None], known.shape)])
-    fitted = np.array([1.0, 0.0, 0.0])
+    of_all = (np.ones(len(scores)), np.log1p(begun), np.log(there.sum(axis=1)))
+    inputs = np.stack([known, *(np.broadcast_to(each[:, None], known.shape) for each in of_all)])
+    fitted = np.array([1.0, 0.0, 0.0, 0.0])
     for _ in range(NEWTON_STEPS):
         likely = softmax(np.where(there, np.einsum("p,pno->no", fitted, inputs), -np.inf))
         slope = np.einsum("pno,no,n->p", inputs, likely - touched, weights, optimize=True)

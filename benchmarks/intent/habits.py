@@ -16,9 +16,17 @@ from action_fusion.intent.intents import Intents
 from action_fusion.intent.recent_paths import ARMS
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
+from actum.arrays import Array
 from actum.messages import Action, Intent, Message, Objects, Posture
 from actum.node import Counters
-from actum_model_trainer.foreseeing.scoring import BEFORE_S, Said, before, calibration_error, earliest
+from actum_model_trainer.foreseeing.scoring import (
+    BEFORE_S,
+    Said,
+    before,
+    earliest,
+    expected_calibration_error,
+    outcomes,
+)
 from actum_model_trainer.foreseeing.takes import Take
 from scene_simulator.simulated_scene import Scene
 
@@ -26,6 +34,8 @@ TASKS = 25
 """Actions of a person: five of each kind."""
 SHARES = {"80 % of each action to one object": 0.8, "objects at random": 0.0}
 """Share of each action that is done to the object that is usual for it, in words and as a number."""
+DRAWS = 200
+"""Drawings of as many people, with replacement, from which an interval is computed."""
 HEAD = (
     "| objects | people | evidence | object right "
     + " | object right ".join(f"{s} s before" for s in BEFORE_S)
@@ -47,7 +57,9 @@ def table(persons: Sequence[int], seed: int) -> Iterator[str]:
     """Yield what is said before the contacts of these people."""
     yield (
         f"{len(persons)} people, {TASKS} actions each, done to three of the objects. The usual object of each action "
-        "was drawn for each person; two actions may have the same. Without the evidence, no event reaches the intents."
+        "was drawn for each person; two actions may have the same. Without the evidence, no event reaches the intents. "
+        f"In brackets: 90 % interval of {DRAWS} drawings of people. Errors of drawings are too large rather than too "
+        "small, as they cannot be negative."
     )
     rows = [HEAD]
     for layout in (LAYOUTS[1], LAYOUTS[3]):
@@ -66,8 +78,17 @@ def _row(name: str, said: Sequence[Watched]) -> str:
         earliest(scored).median_s,
         before(scored, 0.5).brier,
     ]
-    cells = [*(f"{each:.2f}" for each in numbers), f"{calibration_error(scored):.3f}"]
-    return f"| {name} | {' | '.join(cells)} | {pairs.calibration_error(said):.3f} |"
+    errors = [_error(list(map(outcomes, scored))), _error(list(map(pairs.outcomes, said)))]
+    return f"| {name} | {' | '.join([*(f'{each:.2f}' for each in numbers), *errors])} |"
+
+
+def _error(people: Sequence[Array]) -> str:
+    """Return the expected calibration error of people's probabilities, with its interval."""
+    rng = np.random.default_rng(0)
+    drawn = rng.integers(0, len(people), (DRAWS, len(people)))
+    errors = [expected_calibration_error(np.concatenate([people[k] for k in each])) for each in drawn]
+    low, high = np.quantile(errors, (0.05, 0.95))
+    return f"{expected_calibration_error(np.concatenate(people)):.3f} ({low:.3f}–{high:.3f})"
 
 
 def _said_of(scene: Scene) -> Both:

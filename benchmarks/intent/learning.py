@@ -96,7 +96,7 @@ def learnt(
     unit = np.clip((examples.features - mean) / sd, -WIDEST, WIDEST).astype(np.float32)
     usual = Examples.joined([simulated, *(each._replace(weights=USUAL_SHARE * each.weights) for each in real)])
     weights = [_balanced(_network(unit, examples, steps, seed), unit, usual) for seed in range(networks)]
-    names = ("into", "into_bias", "between", "between_bias", "out", "out_bias", "lively")
+    names = ("into", "into_bias", "between", "between_bias", "out", "out_bias", "lively", "among")
     layers = {name: np.array([each[k] for each in weights]) for k, name in enumerate(names)}
     return ContactNetwork.of({"mean": mean, "sd": sd, **layers, **_time_to_contact(unit, examples)})
 
@@ -137,13 +137,13 @@ def _slopes(weights: list[Array], unit: Array, present: Array, touched: Array, w
 
 
 def _balanced(weights: list[Array], unit: Array, examples: Examples) -> list[Array]:
-    """Return the weights of a network whose scores are balanced, and what the objects moved lately add to them."""
+    """Return the weights of a network whose scores are balanced, and what the objects and their motion add to them."""
     into, into_bias, between, between_bias, out, out_bias = weights
     hidden = (np.tanh(np.tanh(part @ into + into_bias) @ between + between_bias) for part in np.array_split(unit, 100))
     scores = np.where(examples.present, np.concatenate([part @ out + out_bias for part in hidden]), -np.inf)
     found = balance(scores, examples.touched, examples.weights, examples.begun)
-    balanced = [found.scale * out, found.scale * out_bias + found.offset, np.array(found.lively)]
-    return [into, into_bias, between, between_bias, *balanced]
+    balanced = [found.scale * out, found.scale * out_bias + found.offset]
+    return [into, into_bias, between, between_bias, *balanced, np.array(found.lively), np.array(found.among)]
 
 
 def _time_to_contact(unit: Array, examples: Examples) -> dict[str, Array]:

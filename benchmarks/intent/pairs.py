@@ -8,10 +8,11 @@ from benchmarks.intent.takes import LAYOUTS, OBJECT_SD_M, TAIL_S, contacts_of, s
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings as FusionSettings
+from actum.arrays import Array
 from actum.messages import Intended, Intent, Message, Objects, Posture, Segment, TrackedObject
 from actum.node import SECOND_NS
 from actum_command.simulated_model import SIMULATED_MODEL
-from actum_model_trainer.foreseeing.scoring import BEFORE_S
+from actum_model_trainer.foreseeing.scoring import BACKGROUND, BEFORE_S, HORIZON_S, expected_calibration_error
 from actum_model_trainer.foreseeing.takes import Contact
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
@@ -19,13 +20,6 @@ from scene_simulator.simulated_scene import Scene
 from scene_simulator.simulator import Simulator, labelled_stream
 from som_classifier.model_loading import load_model
 from som_classifier.node import SomClassifier
-
-BINS = 10
-"""Of the calibration."""
-LEAST = 0.05
-"""Pairs that are less probable are not counted in the calibration."""
-HORIZON_S = 1.5
-"""A pair is right if that action touches that object within so long (s)."""
 
 
 class ArrangedSimulator(Simulator):
@@ -66,7 +60,8 @@ def table(persons: Sequence[int], seed: int) -> Iterator[str]:
     yield f"{count} contacts; the model is the one of the simulated scene that comes with actum."
     rows = [f"| {seconds} | {pairs_right(said, seconds):.2f} |" for seconds in BEFORE_S]
     yield "\n".join(["| before the contact (s) | likeliest action and object right |", "|---:|---:|", *rows])
-    yield f"Expected calibration error of the pair's probability: {calibration_error(said):.3f}."
+    error = expected_calibration_error(np.concatenate([outcomes(each) for each in said]))
+    yield f"Expected calibration error of the pair's probability: {error:.3f}."
 
 
 def _watched(scene: Scene) -> Watched:
@@ -128,19 +123,20 @@ def pairs_right(said: Sequence[Watched], seconds: float) -> float:
     return float(np.mean(right))
 
 
-def calibration_error(said: Sequence[Watched]) -> float:
-    """Return the expected calibration error of the pairs' probabilities."""
-    told, came = [], []
-    for watched in said:
-        for intent in watched.intents:
-            for each in (one for one in intent.intended if (one.action_probability or 0.0) > LEAST):
-                left_s = [
-                    (contact.stamp_ns - intent.stamp_ns) / SECOND_NS
-                    for contact in watched.contacts
-                    if (contact.number, contact.action) == (each.object_id, each.action)
-                ]
-                told.append(each.action_probability or 0.0)
-                came.append(any(0 < left <= HORIZON_S for left in left_s))
-    probability, right = np.array(told), np.array(came)
-    in_bin = [np.minimum((probability * BINS).astype(int), BINS - 1) == k for k in range(BINS)]
-    return float(sum(abs(probability[k].mean() - right[k].mean()) * k.mean() for k in in_bin if k.any()))
+def outcomes(watched: Watched) -> Array:
+    """Return the probability of each pair in each intent, and whether it came, (N, 2)."""
+    told = [
+        (intent.stamp_ns, one)
+        for intent in watched.intents
+        for one in intent.intended
+        if (one.action_probability or 0.0) > BACKGROUND
+    ]
+    came = [
+        any(
+            0 < contact.stamp_ns - stamp_ns <= HORIZON_S * SECOND_NS
+            for contact in watched.contacts
+            if (contact.number, contact.action) == (one.object_id, one.action)
+        )
+        for stamp_ns, one in told
+    ]
+    return np.stack([[one.action_probability or 0.0 for _, one in told], came], axis=1)

@@ -38,9 +38,9 @@ def simulated(persons: Sequence[int], seed: int) -> list[Take]:
     return [_simulated(scene_of(person, seed, *layout), f"{layout}") for person in persons for layout in LAYOUTS]
 
 
-def everyday(persons: Sequence[int], seed: int, minutes: float) -> list[Take]:
+def everyday(persons: Sequence[int], seed: int, minutes: float, layout: tuple[int, float] = LAYOUTS[1]) -> list[Take]:
     """Return takes of simulated people who do everyday things, and now and then an action."""
-    return [_simulated(scene_of(person, seed, *LAYOUTS[1], 3, minutes), "everyday") for person in persons]
+    return [_simulated(scene_of(person, seed, *layout, 3, minutes), "everyday") for person in persons]
 
 
 def scene_of(person: int, seed: int, objects: int, apart_m: float, tasks: int = TASKS, minutes: float = 0.0) -> Scene:

@@ -237,3 +237,10 @@ def test_a_hand_in_the_middle_of_a_thing_is_measured_all_the_same() -> None:
     objects.append(seen(0, here=(0.0, 0.0, 0.0)))
     arms.append(SECOND_NS, np.zeros((len(ARMS), 3)))
     assert np.isfinite(approach(arms, objects, SECOND_NS).features).all()
+
+
+def test_a_person_does_not_act_much_more_often_among_many_objects() -> None:
+    """All objects are approached alike; if each counted for itself, odds would be four times as high among eight."""
+    network, alike = shipped_network(), shipped_network().mean
+    few, many = (network.foresee(np.tile(alike, (2, n, 1)), 2.0).probability.sum(axis=1) for n in (2, 8))
+    assert (many / (1 - many) < 2.5 * few / (1 - few)).all()

@@ -11,8 +11,9 @@ def test_the_balance_by_which_contacts_come_true_is_found() -> None:
     rng = np.random.default_rng(4)
     scores, begun = rng.normal(0, 2, (INSTANTS, OBJECTS)), rng.uniform(0, 6, INSTANTS)
     scores[: INSTANTS // 2, 2] = -np.inf
-    true = softmax(0.8 * scores - 1.5 + 0.7 * np.log1p(begun)[:, None])
+    there = np.isfinite(scores).sum(axis=1)
+    true = softmax(0.8 * scores + (-1.5 + 0.7 * np.log1p(begun) - 0.6 * np.log(there))[:, None])
     drawn = (rng.uniform(size=(INSTANTS, 1)) > np.cumsum(true, axis=1)).sum(axis=1)
     touched = (np.arange(OBJECTS) == drawn[:, None]).astype(float)
     found = balance(scores, touched, np.ones(INSTANTS), begun)
-    assert found == pytest.approx((0.8, -1.5, 0.7), abs=0.08)
+    assert found == pytest.approx((0.8, -1.5, 0.7, -0.6), abs=0.08)

@@ -27,7 +27,8 @@ class ContactNetwork:
     """Several networks of two hidden layers whose probabilities are averaged; one for all objects and both hands.
 
     The score of an object is that of its own approach, softmax over the objects and a score of 0 for none of them.
-    The more objects the person has begun to move lately, the higher are all scores.
+    The more objects the person has begun to move lately, the higher are all scores; the more objects there are, the
+    lower, for a person does not act more often among many.
 
     Attributes:
         mean, sd: (features,), of the training data.
@@ -35,6 +36,7 @@ class ContactNetwork:
         between: (networks, hidden, hidden), with `between_bias` (networks, hidden).
         out: (networks, hidden), with `out_bias` (networks,).
         lively: (networks,), added to every score, times the logarithm of 1 + how many have begun to move lately.
+        among: (networks,), added to every score, times the logarithm of how many objects there are.
         time: (features + 1,), weights of the logarithm of the time to contact (s), the last one constant.
         time_sd: standard deviation of that logarithm.
     """
@@ -48,6 +50,7 @@ class ContactNetwork:
     out: Array
     out_bias: Array
     lively: Array
+    among: Array
     time: Array
     time_sd: Array
 
@@ -69,7 +72,8 @@ class ContactNetwork:
         rows = unit.reshape(-1, unit.shape[2])
         hidden = np.tanh(rows @ self.into + self.into_bias[:, None])
         hidden = np.tanh(hidden @ self.between + self.between_bias[:, None])
-        scores = np.einsum("krh,kh->kr", hidden, self.out) + (self.out_bias + self.lively * np.log1p(begun))[:, None]
+        of_all = self.out_bias + self.lively * np.log1p(begun) + self.among * np.log(max(features.shape[1], 1))
+        scores = np.einsum("krh,kh->kr", hidden, self.out) + of_all[:, None]
         scores = np.where(known, scores.reshape(len(self.out), *known.shape), -np.inf)
         most = np.maximum(scores.max(axis=2, keepdims=True, initial=0.0), 0.0)
         likely = np.exp(scores - most)

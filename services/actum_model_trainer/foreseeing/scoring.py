@@ -8,6 +8,8 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.node import SECOND_NS
+from actum_model_trainer.calibration_error import calibration_error as error_of_bins
+from actum_model_trainer.calibration_error import confidence_bins
 from actum_model_trainer.foreseeing.takes import Contact, Take
 
 HORIZON_S = 1.5
@@ -25,8 +27,6 @@ ALARM = 0.7
 """Probability from which a contact is announced for the count of false alarms."""
 BACKGROUND = 0.05
 """Probabilities below are not counted in the calibration: nearly all instants have no more, and are right."""
-BINS = 10
-"""Of the calibration."""
 BEFORE_S = (1.0, 0.5, 0.25)
 """When before a contact (s) the likeliest object is looked at."""
 
@@ -185,17 +185,21 @@ class Scores(NamedTuple):
 
 def calibration_error(said: Sequence[Said]) -> float:
     """Return the expected calibration error of the likeliest object's probability of a touch within the horizon."""
-    told, true, pointing = [], [], []
-    for each in said:
-        told.append(each.scores.max(axis=1))
-        true.append(touched_soon(each)[np.arange(len(each.scores)), each.scores.argmax(axis=1)])
-        pointing.append(each.take.in_pointing(each.take.stamps_ns))
-    probability, came = np.concatenate(told), np.concatenate(true)
-    counted = (probability > BACKGROUND) & ~np.concatenate(pointing)
-    probability, came = probability[counted], came[counted]
-    in_bin = [np.minimum((probability * BINS).astype(int), BINS - 1) == k for k in range(BINS)]
-    gaps = [abs(probability[k].mean() - came[k].mean()) * k.mean() for k in in_bin if k.any()]
-    return float(sum(gaps))
+    return expected_calibration_error(np.concatenate([outcomes(each) for each in said]))
+
+
+def outcomes(said: Said) -> Array:
+    """Return the likeliest object's probability of a touch within the horizon, and whether it came, (instants, 2)."""
+    likeliest = np.arange(len(said.scores)), said.scores.argmax(axis=1)
+    probability, came = said.scores[likeliest], touched_soon(said)[likeliest]
+    counted = (probability > BACKGROUND) & ~said.take.in_pointing(said.take.stamps_ns)
+    both: Array = np.stack([probability, came], axis=1)[counted]
+    return both
+
+
+def expected_calibration_error(of: Array) -> float:
+    """Return the expected calibration error of probabilities and whether what they are of came, (N, 2)."""
+    return error_of_bins(confidence_bins(*of.T)) if len(of) else 0.0
 
 
 def touched_soon(said: Said) -> Array:
