@@ -71,9 +71,9 @@ class StepService(Service):
             message = decode(key, payload, str(sample.encoding))
             if self._repetitions.has(message, payload):
                 return
-            self._meter.received(key, message, _origin(sample))
             self._step(message, outbox)
             self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
+            self._meter.received(key, message, _origin(sample))  # no answer waits for it
         except DecodeError as error:
             self._counters.reject(error.kind, str(error))
         except Exception as error:
