@@ -65,6 +65,7 @@ class ActionFusion:
     name = "action_fusion"
     inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.OBJECTS, keys.ACTION)
     answers = keys.EVENT
+    on_demand = keys.INTENT
 
     def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
@@ -74,6 +75,7 @@ class ActionFusion:
         self._objects = ObjectsBuffer()
         self._known = KnownObjects(self.counters)
         self._intents = Intents()
+        self.is_demanded = True
         self._pending: list[Pending] = []
         self._answered: dict[tuple[str, int, int | None, str | None], None] = {}
         self._before = Before()
@@ -119,10 +121,13 @@ class ActionFusion:
         self._settings = settings
 
     def _posture(self, posture: Posture) -> list[Message]:
-        """Take a posture; return the events that it completes, then what the person is about to touch."""
+        """Take a posture; return the events that it completes, then what the person is about to touch, if wanted."""
         sample, buffer = posture_sample(posture, self.counters), self._postures.of(posture.agent)
         events = self._take(buffer, sample, f"posture of agent {posture.agent}")
         if not posture.agent or sample.body is None or buffer.newest is not sample:
+            return [*events]
+        if not self.is_demanded:
+            self._intents.take(sample, posture.agent)
             return [*events]
         intent = self._intents.posture(sample, posture.agent, posture.sensor)
         return [*events] if intent is None else [*events, intent]

@@ -43,6 +43,24 @@ def test_an_intent_has_the_stamp_and_the_origin_of_its_posture(node: ActionFusio
     assert {(intent.sensor, intent.agent, intent.session_id) for intent in intents} == {("kinect0", 3, "run-1")}
 
 
+def test_what_is_put_to_a_late_listener_does_not_depend_on_when_it_began_to_listen(node: ActionFusion) -> None:
+    messages = [action("push", final=False), *stream()]
+    demanded = intents_of(node, *messages)
+    late, quiet = ActionFusion(Settings()), messages[: len(messages) // 2]
+    late.is_demanded = False
+    assert intents_of(late, *quiet) == []
+    late.is_demanded = True
+    heard = intents_of(late, *messages[len(quiet) :])
+    assert heard == [intent for intent in demanded if intent.stamp_ns > (quiet[-1].stamp_ns or 0)] != []
+
+
+def test_while_nobody_listens_events_are_put_as_before(node: ActionFusion) -> None:
+    messages = [*stream(), action("push", 0.0, 1.5)]
+    quiet = ActionFusion(Settings())
+    quiet.is_demanded = False
+    assert events_of(quiet, *messages) == events_of(node, *messages) != []
+
+
 def test_the_likeliest_contact_comes_first_and_the_probabilities_sum_to_1_at_most(node: ActionFusion) -> None:
     intents = intents_of(node, *stream())
     assert intents

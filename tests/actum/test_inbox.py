@@ -8,7 +8,7 @@ import zenoh
 from actum import keys
 from actum.codec import decode
 from actum.messages import Posture
-from actum.runtime.inbox import RESUMED_FRAMES_S, RESUMED_S, Inbox, Reach
+from actum.runtime.inbox import MOST_IN_A_TURN, RESUMED_FRAMES_S, RESUMED_S, Inbox, Reach
 from actum.runtime.outbox import Outbox
 from actum.runtime.subscribing import ANSWER_S
 from live import wait_until
@@ -40,6 +40,35 @@ def started(session: zenoh.Session, received: list[Posture]) -> Inbox:
     inbox = Inbox(session, (keys.POSTURE,), "kinect0", REACH)
     inbox.start(receive)
     return inbox
+
+
+class CountedTurns:
+    """Turns that begin once they may; counts what is received in each."""
+
+    def __init__(self) -> None:
+        self.may_begin, self.received = threading.Event(), list[int]()
+
+    def __enter__(self) -> None:
+        assert self.may_begin.wait(10)
+        self.received.append(0)
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def receive(self, _sample: zenoh.Sample) -> None:
+        self.received[-1] += 1
+
+
+def test_what_has_come_together_is_handed_on_in_one_turn_but_others_get_theirs(session: zenoh.Session) -> None:
+    inbox, turns = Inbox(session, (keys.STATUS,), "kinect0", Reach.unknown(0.0)), CountedTurns()
+    inbox.start(turns.receive, turns)
+    for _ in range(MOST_IN_A_TURN + 3):
+        session.put(keys.key(keys.STATUS, "kinect0", "anybody"), b"")
+    turns.may_begin.set()
+    wait_until(lambda: sum(turns.received) == MOST_IN_A_TURN + 3, "all are received")
+    inbox.close()
+    session.close()
+    assert turns.received == [MOST_IN_A_TURN, 3]
 
 
 def test_a_subscription_that_is_closed_while_its_message_is_handled_ends_without_an_error(

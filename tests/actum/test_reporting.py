@@ -1,11 +1,10 @@
-import threading
-
 import pytest
 
 from actum.codec import decode, encode
 from actum.messages import HopTime
 from actum.node import Counters
 from actum.runtime.reporting import MOST_KEYS, MOST_ORIGINS, Meter, Reporter
+from actum.runtime.turns import Turns
 from actum.settings import ServiceSettings
 from people import STANDING, skeleton
 from scenes import action
@@ -79,5 +78,5 @@ def test_a_state_that_quotes_what_somebody_wrote_leaves_the_status_readable(capl
     quoting = Meter("som_classifier", counters, ServiceSettings())
     status = encode(quoting.status())
     assert decode(status.key, status.payload, status.encoding)
-    Reporter(quoting, counters, ServiceSettings(), threading.Lock()).log_state()
+    Reporter(quoting, counters, ServiceSettings(), Turns()).log_state()
     assert len(caplog.text) < 1000

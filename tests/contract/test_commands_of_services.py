@@ -3,7 +3,6 @@
 import json
 import math
 import re
-import threading
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -29,6 +28,7 @@ from actum.messages import Message
 from actum.node import TICK_NS, Counters, Tick
 from actum.runtime.commanding import Commander
 from actum.runtime.reporting import Meter
+from actum.runtime.turns import Turns
 from actum.settings import ServiceSettings
 from model_trainer.trainer import ModelTrainer
 from node_cases import CASES
@@ -112,7 +112,7 @@ class Desk:
         self._failures: list[str] = []
         self._meter = Meter(name, self.node.counters, ServiceSettings())
         self._commander = Commander(
-            tuple(self.node.commands), ServiceSettings(), name, self.node.counters, threading.Lock(),
+            tuple(self.node.commands), ServiceSettings(), name, self.node.counters, Turns(),
             lambda where, error: self._failures.append(f"{where}: {error!r}"),
         )  # fmt: skip
         self._base = keys.commands_key(ServiceSettings().sensor, name)

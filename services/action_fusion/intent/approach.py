@@ -41,17 +41,46 @@ class Approach(NamedTuple):
 
     Attributes:
         names: the objects' names by their number, in the order of the arrays.
-        features: (2, n, `FEATURES`), of right and left hand; NaN where a hand is not known.
-        hands_m: (2, 3), the hands in the camera frame.
+        joints_m: (instants, joints, 3), the arms in the camera frame at `DELAYS_NS`.
         objects_m: (n, 3), the objects' middles in the camera frame.
-        moved: the numbers of the objects that move in a hand.
+        apart_m: (2, n, 3), from right and left hand to each object.
+        distances_m: (2, n), their lengths; NaN where a hand is not known.
+        speeds_mps: (n,), the objects' speeds, `FASTEST_MPS` at the most.
     """
 
     names: dict[int, str]
-    features: Array
-    hands_m: Array
+    joints_m: Array
     objects_m: Array
-    moved: list[int]
+    apart_m: Array
+    distances_m: Array
+    speeds_mps: Array
+
+    @property
+    def hands_m(self) -> Array:
+        """The hands in the camera frame, (2, 3)."""
+        return self.joints_m[0, :2]
+
+    @property
+    def moved(self) -> list[int]:
+        """The numbers of the objects that move in a hand."""
+        in_hand = (self.speeds_mps > MOVES_MPS) & (np.fmin(*self.distances_m) < IN_HAND_M)
+        return [number for number, is_moved in zip(self.names, in_hand.tolist(), strict=True) if is_moved]
+
+    @property
+    def features(self) -> Array:
+        """What contacts are foreseen by, (2, n, `FEATURES`), of right and left hand; NaN where a hand is not known."""
+        hands_m = self.joints_m[:, :2]
+        ahead_m = hands_m[0] + (hands_m[0] - hands_m[2]) * (AHEAD_S / HAND_S[1])
+        to_object = self.apart_m / np.maximum(self.distances_m, SMALLEST_M)[..., None]
+        features = [
+            self.distances_m,
+            np.log(self.distances_m + NEAR_M),
+            *_ways(hands_m[0], hands_m[1 : 1 + len(HAND_S)], self.objects_m),
+            np.linalg.norm(self.objects_m - ahead_m[:, None], axis=2),
+            np.broadcast_to(self.speeds_mps, self.distances_m.shape),
+            *_of_body(self.joints_m, to_object, self.objects_m),
+        ]
+        return np.stack(features, axis=2)
 
 
 def approach(arms: RecentArms, objects: RecentObjects, stamp_ns: int) -> Approach:
@@ -59,23 +88,9 @@ def approach(arms: RecentArms, objects: RecentObjects, stamp_ns: int) -> Approac
     names, places_m = objects.at(stamp_ns, round(OBJECT_S * SECOND_NS))
     joints_m = arms.at(DELAYS_NS)
     now_m, before_m = places_m[:, 0], places_m[:, 1]
-    hands_m = joints_m[:, :2]
-    apart_m = now_m - hands_m[0][:, None]
-    distances_m = np.linalg.norm(apart_m, axis=2)
-    ways = _ways(hands_m[0], hands_m[1 : 1 + len(HAND_S)], now_m)
-    ahead_m = hands_m[0] + (hands_m[0] - hands_m[2]) * (AHEAD_S / HAND_S[1])
+    apart_m = now_m - joints_m[0, :2][:, None]
     speeds_mps = np.minimum(np.linalg.norm(now_m - before_m, axis=1) / OBJECT_S, FASTEST_MPS)
-    in_hand = (speeds_mps > MOVES_MPS) & (np.fmin(*distances_m) < IN_HAND_M)
-    moved = [number for number, is_moved in zip(names, in_hand.tolist(), strict=True) if is_moved]
-    features = [
-        distances_m,
-        np.log(distances_m + NEAR_M),
-        *ways,
-        np.linalg.norm(now_m - ahead_m[:, None], axis=2),
-        np.broadcast_to(speeds_mps, distances_m.shape),
-        *_of_body(joints_m, apart_m / np.maximum(distances_m, SMALLEST_M)[..., None], now_m),
-    ]
-    return Approach(names, np.stack(features, axis=2), hands_m[0], now_m, moved)
+    return Approach(names, joints_m, now_m, apart_m, np.linalg.norm(apart_m, axis=2), speeds_mps)
 
 
 def _ways(hands_m: Array, earlier_m: Array, objects_m: Array) -> list[Array]:

@@ -10,7 +10,7 @@ import numpy as np
 from action_fusion.intake.stream_samples import ObjectsSample, PostureSample
 from action_fusion.intent.action_shares import shares_of
 from action_fusion.intent.approach import Approach, approach
-from action_fusion.intent.contact_network import ContactNetwork, Foreseen, shipped_network
+from action_fusion.intent.contact_network import ContactNetwork, shipped_network
 from action_fusion.intent.recent_beginnings import RecentBeginnings
 from action_fusion.intent.recent_paths import LONGEST_GAP_NS, SIDES, RecentArms, RecentObjects, arms_of
 from action_fusion.intent.usual_objects import Done, UsualObjects
@@ -96,13 +96,10 @@ class Intents:
 
         A posture of another session, or one that is older than the newest, begins a person anew.
         """
-        assert sample.body is not None
-        person = self._person(agent)
-        if person.session_id != sample.session_id or sample.stamp_ns <= person.arms.newest_ns:
-            person = self._people[agent] = Person(sample.session_id)
-        person.arms.append(sample.stamp_ns, arms_of(sample.body))
+        person, seen, begun = self.take(sample, agent)
         ongoing = person.ongoing(sample.stamp_ns)
-        likely = sorted(self._intended(person, sample.stamp_ns, ongoing), key=lambda each: -each.probability)
+        intended = () if seen is None else self._intended(seen, begun, sample.stamp_ns, ongoing)
+        likely = sorted(intended, key=lambda each: -each.probability)
         before_ns, person.reached_ns = person.reached_ns, sample.stamp_ns if likely else None
         has_ended = before_ns is not None and sample.stamp_ns - before_ns <= LONGEST_GAP_NS
         if not likely and not has_ended:
@@ -116,6 +113,21 @@ class Intents:
             segment_id=None if ongoing is None else ongoing.segment_id,
             session_id=sample.session_id,
         )
+
+    def take(self, sample: PostureSample, agent: int) -> tuple[Person, Approach | None, float]:
+        """Take a valid posture, as later intents need it also where this one is not wanted.
+
+        Returns:
+            The person, how the hands approach the objects, which is None where no object is known, and how many
+            objects have begun to move lately.
+        """
+        assert sample.body is not None
+        person = self._person(agent)
+        if person.session_id != sample.session_id or sample.stamp_ns <= person.arms.newest_ns:
+            person = self._people[agent] = Person(sample.session_id)
+        person.arms.append(sample.stamp_ns, arms_of(sample.body))
+        seen = approach(person.arms, self._objects, sample.stamp_ns) if self._objects else None
+        return person, seen, person.beginnings.with_moved(sample.stamp_ns, [] if seen is None else seen.moved)
 
     def objects(self, sample: ObjectsSample) -> None:
         """Take where the objects are."""
@@ -144,12 +156,9 @@ class Intents:
             self._people.popitem(last=False)
         return person
 
-    def _intended(self, person: Person, stamp_ns: int, ongoing: Estimate | None) -> Iterator[Intended]:
+    def _intended(self, seen: Approach, begun: float, stamp_ns: int, ongoing: Estimate | None) -> Iterator[Intended]:
         """Yield the contacts that are probable, each by the likelier hand."""
-        known = self._foreseen(person, stamp_ns)
-        if known is None:
-            return
-        seen, foreseen = known
+        foreseen = self._network.foresee(seen.features, begun)
         done = self._done(stamp_ns, ongoing, [*seen.names])
         probability = np.stack([touched_given(*of_hand) for of_hand in zip(done, foreseen.probability, strict=True)])
         soon = touched_soon(probability)
@@ -181,12 +190,6 @@ class Intents:
             return [None, None]
         done = self._usual.done(stamp_ns, ongoing.shares, objects)
         return [done if ongoing.hand in (None, side) else None for side in SIDES]
-
-    def _foreseen(self, person: Person, stamp_ns: int) -> tuple[Approach, Foreseen] | None:
-        """Return how the hands approach the objects, and the contacts foreseen; None where no object is known."""
-        seen = approach(person.arms, self._objects, stamp_ns) if self._objects else None
-        begun = person.beginnings.with_moved(stamp_ns, [] if seen is None else seen.moved)
-        return None if seen is None else (seen, self._network.foresee(seen.features, begun))
 
 
 def touched_soon(probability: Array) -> Array:

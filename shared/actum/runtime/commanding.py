@@ -1,6 +1,5 @@
 """Answers the commands that a service is asked by Zenoh queries."""
 
-import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -9,6 +8,7 @@ import zenoh
 from actum import keys
 from actum.commands import JSON, MSGPACK, Command, Refusal, described, packed, unpacked
 from actum.node import Counters
+from actum.runtime.turns import Turns
 from actum.settings import ServiceSettings
 
 
@@ -30,7 +30,7 @@ class Commander:
         settings: ServiceSettings,
         service: str,
         counters: Counters,
-        lock: threading.Lock,
+        lock: Turns,
         end_at_bug: Callable[[str, BaseException], None],
     ) -> None:
         self._commands = {each.name: each for each in commands}

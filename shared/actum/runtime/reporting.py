@@ -18,6 +18,7 @@ from actum.node import Counters
 from actum.runtime.outbox import Outbox
 from actum.runtime.place import Place
 from actum.runtime.session import connected
+from actum.runtime.turns import Turns
 from actum.settings import ServiceSettings
 from actum.skeletons import JOINTS
 from actum.states import State
@@ -127,7 +128,7 @@ class Meter:
 class Reporter:
     """Reports while a service runs, and stops it where another instance takes over."""
 
-    def __init__(self, meter: Meter, counters: Counters, settings: ServiceSettings, lock: threading.Lock) -> None:
+    def __init__(self, meter: Meter, counters: Counters, settings: ServiceSettings, lock: Turns) -> None:
         self._meter, self._counters, self._settings, self._lock = meter, counters, settings, lock
         self._health_file = HealthFile(settings.health_file)
         self._connected = True

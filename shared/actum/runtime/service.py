@@ -17,6 +17,7 @@ from actum.runtime.outbox import Outbox
 from actum.runtime.place import Place
 from actum.runtime.reporting import Meter, Reporter
 from actum.runtime.stopping import Pace, wait_for
+from actum.runtime.turns import Turns
 from actum.settings import ServiceSettings
 from actum.states import State
 
@@ -26,7 +27,7 @@ log = logging.getLogger("actum")
 class Service(ABC):
     """The part common to nodes and sources: start and end, the one instance per sensor, status and description."""
 
-    def __init__(self, what: Servable, settings: ServiceSettings, lock: "threading.Lock | None" = None) -> None:
+    def __init__(self, what: Servable, settings: ServiceSettings, turns: Turns | None = None) -> None:
         self.name, counters = what.name, what.counters
         self.failed = self.has_ended = False
         self.is_healthy_beside: Callable[[], bool] = lambda: True
@@ -35,7 +36,7 @@ class Service(ABC):
         self._settings = settings
         self._counters = counters
         self._meter = Meter(self.name, counters, settings)
-        self._lock = lock or threading.Lock()
+        self._lock = turns or Turns()
         self._reporter = Reporter(self._meter, counters, settings, self._lock)
 
     def introduce(self) -> None:

@@ -16,6 +16,7 @@ from actum.runtime.inbox import Inbox, Reach
 from actum.runtime.outbox import Outbox
 from actum.runtime.resuming import Resumption
 from actum.runtime.service import Service
+from actum.runtime.turns import Turns
 from actum.settings import ServiceSettings
 
 LONGEST_TICK_NS = 2 * TICK_NS
@@ -23,17 +24,17 @@ LONGEST_TICK_NS = 2 * TICK_NS
 meanwhile, before it gives up waiting for it."""
 REMEMBERED = 1024
 """Answers remembered: more than publishers keep for late subscribers on all keys together."""
-_TURN = threading.Lock()
-"""The lock of all services of this process that read no images: one handles a message, the others wait. Only one thread
+_TURNS = Turns()
+"""The turns of all services of this process that read no images: one handles messages, the others wait. Only one thread
 runs Python at a time anyway, and threads that take turns within a message cost more than threads that take turns after
-it. Images are mostly read outside of Python, several at a time."""
+some of them. Images are mostly read outside of Python, several at a time."""
 
 
 class StepService(Service):
     """Gives a pure step the messages of its topics, and ticks; what becomes of its answers a subclass says."""
 
     def __init__(self, step: Node | Bridge, settings: ServiceSettings) -> None:
-        super().__init__(step, settings, _TURN if keys.COLOR not in step.inputs else None)
+        super().__init__(step, settings, _TURNS if keys.COLOR not in step.inputs else None)
         self._inputs = step.inputs
         self._inbox: Inbox | None = None
         self._repetitions = Repetitions()
@@ -45,7 +46,7 @@ class StepService(Service):
         """Handle messages and ticks until stopped, and before them the messages that the inbox is to reach back to."""
         self._meter.await_history()
         self._inbox = Inbox(session, self._inputs, self._settings.sensor, reach)
-        self._inbox.start(lambda sample: self._receive(sample, outbox, stop))
+        self._inbox.start(lambda sample: self._receive(sample, outbox, stop), self._lock)
         tick_ns, before_ns = 0, time.monotonic_ns()
         try:
             while not stop.wait(TICK_NS / 1e9):
@@ -63,21 +64,20 @@ class StepService(Service):
         return self._inbox is not None and self._inbox.working
 
     def _receive(self, sample: zenoh.Sample, outbox: Outbox, stop: threading.Event) -> None:
-        """Handle one sample; bad input is counted, a repetition left out, a bug ends the process."""
+        """Handle one sample; bad input is counted, a repetition left out, a bug ends the process. The lock is held."""
         began_ns = time.perf_counter_ns()
         key, payload = str(sample.key_expr), sample.payload.to_bytes()
-        with self._lock:
-            try:
-                message = decode(key, payload, str(sample.encoding))
-                if self._repetitions.has(message, payload):
-                    return
-                self._meter.received(key, message, _origin(sample))
-                self._step(message, outbox)
-                self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
-            except DecodeError as error:
-                self._counters.reject(error.kind, str(error))
-            except Exception as error:
-                self.end_at_bug(f"while handling a message on {key}", error, stop)
+        try:
+            message = decode(key, payload, str(sample.encoding))
+            if self._repetitions.has(message, payload):
+                return
+            self._step(message, outbox)
+            self._meter.took((time.perf_counter_ns() - began_ns) / 1e6)
+            self._meter.received(key, message, _origin(sample))  # no answer waits for it
+        except DecodeError as error:
+            self._counters.reject(error.kind, str(error))
+        except Exception as error:
+            self.end_at_bug(f"while handling a message on {key}", error, stop)
 
     @abstractmethod
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
