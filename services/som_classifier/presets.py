@@ -56,6 +56,8 @@ class Prior:
         log_error: the mean log(d²) of postures from the posture map that a person not trained on may well reach with a
             trained action, d in metres over all joints of a standard body.
         threshold: completeness that what is found without marks must exceed.
+        precision: share of the segments found in which any action is done.
+        precision_segments: its weight, as a number of segments found.
         movement_above: by how much the logarithm of legs' or trunk's movement exceeds its action's mean in hardly any
             instance.
     """
@@ -68,6 +70,8 @@ class Prior:
     least_from_one: tuple[float, float]
     log_error: float
     threshold: float
+    precision: float
+    precision_segments: float
     movement_above: float
 
 
@@ -264,6 +268,8 @@ PYRAMID = PyramidPreset(
         least_from_one=(0.15, 0.25),
         log_error=-2.5,
         threshold=0.5,
+        precision=0.9,
+        precision_segments=12.0,
         movement_above=1.0,
     ),
     spotting=SpottingPreset(
