@@ -63,8 +63,8 @@ def chosen_threshold(
 ) -> ThresholdChoice:
     """Search the streams with each threshold, and choose the best after smoothing over neighbouring ones."""
     judged = [Judged.of(each, learned) for each in scanned]
-    by_threshold = [found(judged, learned, labels, threshold) for threshold in thresholds]
-    scores = list(map(event_scores, by_threshold))
+    by_threshold = (found(judged, learned, labels, threshold) for threshold in thresholds)
+    scores, precisions = zip(*((event_scores(own), precision(own, prior)) for own in by_threshold), strict=True)
     worth = np.array([_worth(score) for score in scores])
     smoothed = np.convolve(np.pad(worth, 1, mode="edge"), np.full(3, 1 / 3), mode="valid")
     counted = scores[0].background_min >= SHORTEST_BACKGROUND_MIN
@@ -74,7 +74,7 @@ def chosen_threshold(
         float(smoothed.max()),
         np.minimum.accumulate(rates).tolist() if rates else [],
         [score.event.recall for score in scores],
-        [precision(each, prior) for each in by_threshold],
+        list(precisions),
     )
 
 
