@@ -1,5 +1,6 @@
 """Training of the verifier: its axes, and the probability that its likeness stands for."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,13 +15,11 @@ from actum_model_trainer.training_data import TrainingData
 from som_classifier.presets import Prior, PyramidPreset
 from som_classifier.verifier import Verifier
 
-STRANGE_QUANTILES = 0.9, 0.99
-"""Quantiles of the likeness of what was scored without its action, and of background. Models of few people differ by
-these: the more examples are known, the higher are the scores of everything."""
-STRANGE_EXPONENT = 0.75
-"""Power of the likeness of strange movement with which the likeness of true instances grows in models of one person."""
+STRANGE_QUANTILE = 0.9
+"""Quantile of the likeness of what was scored without its action, by which models of few people differ: with more
+examples everything scores higher."""
 LEAST_QUANTILE = 0.05
-"""Smallest of these quantiles that counts: a model of two actions may score all else below 0."""
+"""Smallest such quantile that counts: a model of two actions may score all else below 0."""
 STRANGE_SHARE = 0.25
 """How often a marked segment is assumed to be an action that nobody taught, and how often any other movement, for each
 that is taught."""
@@ -86,7 +85,7 @@ def verification(of: Likenesses, prior: Prior, people: int) -> tuple[float, floa
 
     Instances are what was taught, scored without its person. What is none are the same, scored without their action,
     and the background. Each of these kinds counts as much as a quarter of what was taught. Few people show little of
-    that, so the regression is averaged with the prior's, in which likeness is relative to that of strange movement.
+    that, so the regression is averaged with the prior's, in which the likeness of untaught actions scales that of all.
     """
     groups, shares = (of.taught, of.untaught, of.background), (1.0, STRANGE_SHARE, STRANGE_SHARE)
     is_right = np.concatenate([of.is_right, np.zeros(len(of.untaught) + len(of.background), dtype=bool)])
@@ -96,16 +95,10 @@ def verification(of: Likenesses, prior: Prior, people: int) -> tuple[float, floa
     ]
     own = logistic_fit(np.concatenate(groups), is_right, np.concatenate(counts))
     slope, intercept = prior.verification
-    expected = slope / strange_likeness(of) ** STRANGE_EXPONENT, intercept
+    strange = max(float(np.quantile(of.untaught, STRANGE_QUANTILE)), LEAST_QUANTILE)
+    expected = slope / math.sqrt(strange), intercept
     found = averaged_with_prior(np.array(own), np.array(expected), prior, people)
     return float(found[0]), float(found[1])
-
-
-def strange_likeness(of: Likenesses) -> float:
-    """Return the geometric mean of the quantiles of untaught actions and of background; without this, of the former."""
-    strange = zip((of.untaught, of.background), STRANGE_QUANTILES, strict=True)
-    quantiles = [np.quantile(likenesses, quantile) for likenesses, quantile in strange if len(likenesses)]
-    return float(np.exp(np.log(np.maximum(quantiles, LEAST_QUANTILE)).mean()))
 
 
 def least_likenesses(of: Likenesses, preset: PyramidPreset, people: int, one_sample_each: bool) -> tuple[float, float]:

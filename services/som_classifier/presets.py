@@ -50,7 +50,7 @@ class Prior:
         gain: inverse temperature of the softmax of cosines.
         gain_where_inferred: the same where distances were inferred from an image and a standard body's size.
         verification: of the logistic regression of whether a segment is a true instance of its action: slope on its
-            likeness, where that of strange movement is 1, and intercept.
+            likeness where that of untaught actions reaches 1 (it falls with the root of this), and intercept.
         least_likeness: the likenesses that true instances exceed, shares `known_share` and `found_share` of them.
         least_from_one: the same where no person has performed an action more than once: they are lower then.
         log_error: the mean log(d²) of postures from the posture map that a person not trained on may well reach with a
@@ -263,7 +263,7 @@ PYRAMID = PyramidPreset(
         people=4.0,
         gain=6.0,
         gain_where_inferred=4.2,
-        verification=(3.35, -3.2),
+        verification=(4.9, -3.0),
         least_likeness=(0.20, 0.30),
         least_from_one=(0.15, 0.25),
         log_error=-2.5,

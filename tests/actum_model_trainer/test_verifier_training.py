@@ -10,11 +10,10 @@ from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.training import train
 from actum_model_trainer.verifier_training import (
-    STRANGE_EXPONENT,
+    STRANGE_QUANTILE,
     STRANGE_SHARE,
     Likenesses,
     least_likenesses,
-    strange_likeness,
     verification,
 )
 from performers import TINY
@@ -58,9 +57,8 @@ def test_what_is_wrongly_called_is_no_true_instance() -> None:
 
 def test_one_person_shows_nothing_of_others_so_the_prior_decides() -> None:
     of, (slope, intercept) = likenesses(0.9, 0.1, 0.1), TINY.prior.verification
-    assert verification(of, TINY.prior, 1) == pytest.approx(
-        (slope / strange_likeness(of) ** STRANGE_EXPONENT, intercept)
-    )
+    expected = slope / np.sqrt(np.quantile(of.untaught, STRANGE_QUANTILE)), intercept
+    assert verification(of, TINY.prior, 1) == pytest.approx(expected)
     many = verification(of, TINY.prior, 500)
     assert many == pytest.approx(verification(of, ALONE, SEVERAL), rel=0.05)
 
@@ -68,21 +66,14 @@ def test_one_person_shows_nothing_of_others_so_the_prior_decides() -> None:
 def test_in_the_prior_a_likeness_counts_the_less_the_higher_everything_scores() -> None:
     """With more examples everything scores higher, strange movement, too."""
     few = likenesses(0.9, 0.3, 0.3)
-    twice = replace(few, untaught=2 * few.untaught, background=2 * few.background)
+    twice = replace(few, untaught=2 * few.untaught)
     (of_few, _), (of_twice, _) = (verification(each, TINY.prior, 1) for each in (few, twice))
-    assert of_few == pytest.approx(2**STRANGE_EXPONENT * of_twice)
+    assert of_few == pytest.approx(np.sqrt(2) * of_twice)
 
 
-@pytest.mark.parametrize(
-    ("untaught", "background", "expected"),
-    [([0.1] * 10, [0.4] * 10, 0.2), ([0.1] * 10, [], 0.1), ([-1.0] * 10, [0.2] * 10, 0.1), ([-1.0], [-1.0], 0.05)],
-    ids=["the geometric mean", "no background", "few actions, all else below 0", "all below 0"],
-)
-def test_the_likeness_of_strange_movement_is_above_0(
-    untaught: list[float], background: list[float], expected: float
-) -> None:
-    of = replace(likenesses(0.9, 0.1, 0.1), untaught=np.array(untaught), background=np.array(background))
-    assert strange_likeness(of) == pytest.approx(expected)
+def test_where_all_else_scores_below_0_the_prior_stays_finite() -> None:
+    of = likenesses(0.9, -0.5, 0.1)
+    assert np.isfinite(verification(of, TINY.prior, 1)).all()
 
 
 def test_shares_of_true_instances_are_more_like_than_the_least() -> None:
