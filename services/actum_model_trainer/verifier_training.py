@@ -1,5 +1,6 @@
 """Training of the verifier: its axes, and the probability that its likeness stands for."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,10 @@ from som_classifier.presets import Prior, PyramidPreset
 from som_classifier.verifier import Verifier
 
 STRANGE_QUANTILE = 0.9
-"""Quantile of the likeness of what was scored without its action, by which models of few people differ."""
+"""Quantile of the likeness of what was scored without its action, by which models of few people differ: with more
+examples everything scores higher."""
+LEAST_QUANTILE = 0.05
+"""Smallest such quantile that counts: a model of two actions may score all else below 0."""
 STRANGE_SHARE = 0.25
 """How often a marked segment is assumed to be an action that nobody taught, and how often any other movement, for each
 that is taught."""
@@ -81,7 +85,7 @@ def verification(of: Likenesses, prior: Prior, people: int) -> tuple[float, floa
 
     Instances are what was taught, scored without its person. What is none are the same, scored without their action,
     and the background. Each of these kinds counts as much as a quarter of what was taught. Few people show little of
-    that, so the regression is averaged with the prior's, which looks at what was scored without its action.
+    that, so the regression is averaged with the prior's, in which the likeness of untaught actions scales that of all.
     """
     groups, shares = (of.taught, of.untaught, of.background), (1.0, STRANGE_SHARE, STRANGE_SHARE)
     is_right = np.concatenate([of.is_right, np.zeros(len(of.untaught) + len(of.background), dtype=bool)])
@@ -90,8 +94,9 @@ def verification(of: Likenesses, prior: Prior, people: int) -> tuple[float, floa
         for group, share in zip(groups, shares, strict=True)
     ]
     own = logistic_fit(np.concatenate(groups), is_right, np.concatenate(counts))
-    slope, of_untaught, intercept = prior.verification
-    expected = slope, intercept + of_untaught * float(np.quantile(of.untaught, STRANGE_QUANTILE))
+    slope, intercept = prior.verification
+    strange = max(float(np.quantile(of.untaught, STRANGE_QUANTILE)), LEAST_QUANTILE)
+    expected = slope / math.sqrt(strange), intercept
     found = averaged_with_prior(np.array(own), np.array(expected), prior, people)
     return float(found[0]), float(found[1])
 

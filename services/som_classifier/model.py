@@ -4,7 +4,7 @@ import hashlib
 import json
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -38,7 +38,7 @@ class Recognition:
         confidence: in the label, within [0, 1]; each kind of model defines it.
         activations: every neuron's cosine by action.
         part: the body part that moves most.
-        familiarity: how similar the segment is to what was trained; None where the model cannot tell.
+        familiarity: the probability that the segment is a true instance of the label; None where the model cannot tell.
         unknown: whether the action may be none of those trained.
         doubtful: whether it is so unlike its action that it is not published where nobody marked it.
     """
@@ -50,6 +50,14 @@ class Recognition:
     familiarity: float | None = None
     unknown: bool = False
     doubtful: bool = False
+
+    def where_found(self, precision: float) -> "Recognition":
+        """Return the answer to a segment that nobody marked.
+
+        Marks are put where an action is done. Of what a search finds, an action is done in this share only, whatever
+        the rest looks like.
+        """
+        return self if self.familiarity is None else replace(self, familiarity=precision * self.familiarity)
 
 
 class ModelMetadata(BaseModel):

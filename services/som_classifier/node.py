@@ -193,7 +193,8 @@ class SomClassifier:
         """Mark and answer a segment that was found, unless it is not to be published; count what becomes of it."""
         search = stream.search
         closed = stream.cut(OpenSegment(search.next_id, found.start_ns, agent, end_ns=found.end_ns))
-        recognition = None if closed.reason else self._recognise(closed.usable, complete=True)
+        answer = None if closed.reason else self._recognise(closed.usable, complete=True)
+        recognition = answer and answer.where_found(found.precision)
         fate = self._fate(closed, recognition, search)
         self.counters.counts.update(["found", fate])
         if fate == "told":

@@ -50,12 +50,14 @@ class Prior:
         gain: inverse temperature of the softmax of cosines.
         gain_where_inferred: the same where distances were inferred from an image and a standard body's size.
         verification: of the logistic regression of whether a segment is a true instance of its action: slope on its
-            likeness, slope on `STRANGE_QUANTILE` of the likeness of what was left out of training, and intercept.
+            likeness where that of untaught actions reaches 1 (it falls with the root of this), and intercept.
         least_likeness: the likenesses that true instances exceed, shares `known_share` and `found_share` of them.
         least_from_one: the same where no person has performed an action more than once: they are lower then.
         log_error: the mean log(d²) of postures from the posture map that a person not trained on may well reach with a
             trained action, d in metres over all joints of a standard body.
         threshold: completeness that what is found without marks must exceed.
+        precision: share of the segments found in which any action is done.
+        precision_segments: its weight, as a number of segments found.
         movement_above: by how much the logarithm of legs' or trunk's movement exceeds its action's mean in hardly any
             instance.
     """
@@ -63,11 +65,13 @@ class Prior:
     people: float
     gain: float
     gain_where_inferred: float
-    verification: tuple[float, float, float]
+    verification: tuple[float, float]
     least_likeness: tuple[float, float]
     least_from_one: tuple[float, float]
     log_error: float
     threshold: float
+    precision: float
+    precision_segments: float
     movement_above: float
 
 
@@ -259,11 +263,13 @@ PYRAMID = PyramidPreset(
         people=4.0,
         gain=6.0,
         gain_where_inferred=4.2,
-        verification=(10.7, -5.2, -1.9),
+        verification=(4.9, -3.0),
         least_likeness=(0.20, 0.30),
         least_from_one=(0.15, 0.25),
         log_error=-2.5,
         threshold=0.5,
+        precision=0.9,
+        precision_segments=12.0,
         movement_above=1.0,
     ),
     spotting=SpottingPreset(

@@ -247,7 +247,7 @@ def test_the_share_of_the_common_head_is_the_one_with_which_most_is_found(
     scanned = ScannedStream(stream, frames, np.array(answers, np.float32))
     learned = SpottingModel(CompletenessHeads(np.zeros((1, 3), np.float32), np.zeros(3, np.float32)), METADATA)
     search = replace(TINY.spotting, common_shares=(0.0, 0.3, 0.5), thresholds=(0.45,))
-    assert _chosen([scanned], learned, LABELS, search)[0] == share
+    assert _chosen([scanned], learned, LABELS, replace(TINY, spotting=search))[0] == share
 
 
 def test_a_logistic_regression_finds_the_slope_and_intercept_that_made_the_outcomes() -> None:

@@ -56,11 +56,24 @@ def test_what_is_wrongly_called_is_no_true_instance() -> None:
 
 
 def test_one_person_shows_nothing_of_others_so_the_prior_decides() -> None:
-    of, (slope, of_untaught, intercept) = likenesses(0.9, 0.1, 0.1), TINY.prior.verification
-    expected = slope, intercept + of_untaught * np.quantile(of.untaught, STRANGE_QUANTILE)
+    of, (slope, intercept) = likenesses(0.9, 0.1, 0.1), TINY.prior.verification
+    expected = slope / np.sqrt(np.quantile(of.untaught, STRANGE_QUANTILE)), intercept
     assert verification(of, TINY.prior, 1) == pytest.approx(expected)
     many = verification(of, TINY.prior, 500)
     assert many == pytest.approx(verification(of, ALONE, SEVERAL), rel=0.05)
+
+
+def test_in_the_prior_a_likeness_counts_the_less_the_higher_everything_scores() -> None:
+    """With more examples everything scores higher, strange movement, too."""
+    few = likenesses(0.9, 0.3, 0.3)
+    twice = replace(few, untaught=2 * few.untaught)
+    (of_few, _), (of_twice, _) = (verification(each, TINY.prior, 1) for each in (few, twice))
+    assert of_few == pytest.approx(np.sqrt(2) * of_twice)
+
+
+def test_where_all_else_scores_below_0_the_prior_stays_finite() -> None:
+    of = likenesses(0.9, -0.5, 0.1)
+    assert np.isfinite(verification(of, TINY.prior, 1)).all()
 
 
 def test_shares_of_true_instances_are_more_like_than_the_least() -> None:

@@ -159,6 +159,16 @@ def test_what_the_recogniser_calls_unknown_is_held_back_and_counted(
     assert node.counters.counts == {"found": 1, "unknown": 1} and not node.counters.rejects
 
 
+@pytest.mark.parametrize("precision", [1.0, 0.5, 0.0])
+def test_what_is_found_is_as_familiar_as_if_marked_as_often_as_the_search_is_right_and_published_all_the_same(
+    precision: float,
+) -> None:
+    *_, marked = put_by(SomClassifier(finding(tiny_model(), LIFT)), stream())
+    *_, action = put_by(SomClassifier(finding(tiny_model(), replace(LIFT, precision=precision))), stream())
+    assert isinstance(marked, Action) and marked.familiarity and isinstance(action, Action)
+    assert action == marked.model_copy(update={"familiarity": pytest.approx(precision * marked.familiarity)})
+
+
 @settings(max_examples=12, deadline=None)
 @given(length=st.integers(0, 200), people=st.integers(1, 3))
 def test_a_prefix_of_a_stream_gives_the_same_decisions(length: int, people: int) -> None:

@@ -1,6 +1,7 @@
 """The search itself, with heads whose answers are written down: what is told when, from where to where."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -38,11 +39,14 @@ def spotted(
     stamps_ms: Iterable[int],
     invalid: Iterable[int] = (),
     durations_s: Sequence[float] = (0.5, 1.0),
+    learned: Mapping[str, list[float]] = MappingProxyType({}),
+    accepted_per_min: float | None = None,
 ) -> list[Spotted]:
     """What each frame shows; those with stamps among `invalid` hold no posture."""
     heads = CompletenessHeads(np.eye(1, dtype=np.float32), np.zeros(1, np.float32))
-    learned = SpottingModel(heads, METADATA.model_copy(update={"window_durations_s": [*durations_s]}))
-    spotter = PyramidSpotter(Scripted(answers).pooled, ["wave"], learned, SpottingOptions())
+    metadata = METADATA.model_copy(update={"window_durations_s": [*durations_s], **learned})
+    options = SpottingOptions(accepted_per_min)
+    spotter = PyramidSpotter(Scripted(answers).pooled, ["wave"], SpottingModel(heads, metadata), options)
     lost = set(invalid)
     return [
         spotter.step(Frame(ms * MS, None, (1,), 0, 2.0, None if ms in lost else np.zeros((15, 3)), np.zeros(5)))
@@ -128,6 +132,15 @@ def test_what_was_decided_is_not_going_on_any_more() -> None:
     shown = spotted(WAVE | {(1300, 2300): 0.9}, TENTHS)
     assert [ms for ms, each in zip(TENTHS, shown, strict=True) if each.ongoing] == [2000]
     assert [each.segments for each in shown if each.segments] == [(SpottedSegment(1000 * MS, 2000 * MS, "wave"),)]
+
+
+@pytest.mark.parametrize(("accepted_per_min", "precision"), [(None, 0.6), (1.0, 0.6), (0.1, 0.9)])
+def test_what_is_found_says_how_often_an_action_is_done_in_what_the_threshold_in_use_finds(
+    accepted_per_min: float | None, precision: float
+) -> None:
+    counted = {"thresholds": [0.5, 0.7], "false_alarms_per_min": [1.0, 0.1], "precisions": [0.6, 0.9]}
+    shown = spotted(WAVE, TENTHS, learned=counted, accepted_per_min=accepted_per_min)
+    assert [segment.precision for each in shown for segment in each.segments] == [precision]
 
 
 @pytest.mark.parametrize(("accepted_per_min", "is_found"), [(1.0, True), (0.1, False)])

@@ -68,7 +68,7 @@ def with_spotting(
     answered = scanned(model, usable, of_others, folds, before, progress)
     if not any(len(each.windows) for each in answered):
         return model
-    share, choice = _chosen(answered, SpottingModel(heads, before), model.labels, search)
+    share, choice = _chosen(answered, SpottingModel(heads, before), model.labels, preset)
     probability = _probability(_mixed(answered, share), model.labels)
     people = len({stream.person for stream in usable if stream.segments})
     threshold = float(averaged_with_prior(choice.threshold, preset.prior.threshold, preset.prior, people))
@@ -115,12 +115,12 @@ def digest_of_background(streams: Sequence[LabelledStream]) -> str:
 
 
 def _chosen(
-    answered: Sequence[ScannedStream], untuned: SpottingModel, labels: Sequence[str], search: SpottingPreset
+    answered: Sequence[ScannedStream], untuned: SpottingModel, labels: Sequence[str], preset: PyramidPreset
 ) -> tuple[float, ThresholdChoice]:
     """Choose the common head's share, and with it the threshold, by what is found in streams of people left out."""
     choices = [
-        (share, chosen_threshold(_mixed(answered, share), untuned, labels, search.thresholds))
-        for share in search.common_shares
+        (share, chosen_threshold(_mixed(answered, share), untuned, labels, preset.spotting.thresholds, preset.prior))
+        for share in preset.spotting.common_shares
     ]
     return max(choices, key=lambda choice: choice[1].worth)
 

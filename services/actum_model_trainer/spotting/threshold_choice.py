@@ -1,5 +1,6 @@
 """The threshold of the search, chosen by what it finds in streams of people left out of the heads' training."""
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -13,6 +14,7 @@ from actum_model_trainer.continuous.scoring import EventScores, event_scores
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.scanning import ScannedStream
 from som_classifier.kinematics import GAP_NS
+from som_classifier.presets import Prior
 from som_classifier.spotting.decoding import Decoder, decoded
 from som_classifier.spotting.spotting_model import JudgedWindows, SpottingModel
 
@@ -24,6 +26,8 @@ SHORTEST_BACKGROUND_MIN = 0.5
 """Minutes of background below which false alarms a minute are not counted: too few for a rate."""
 IOU = 0.5
 """Overlap at which bounds count as right in that choice."""
+COMMON_SHARE = 0.5
+"""Of the shorter of a segment found and an action: from this on the action is done in it."""
 
 
 @dataclass(frozen=True)
@@ -35,12 +39,14 @@ class ThresholdChoice:
         worth: what it is worth.
         false_alarms_per_min: by threshold; empty where there is too little background.
         recalls: by threshold.
+        precisions: share of what is found in which any action is done, by threshold.
     """
 
     threshold: float
     worth: float
     false_alarms_per_min: list[float]
     recalls: list[float]
+    precisions: list[float]
 
     @property
     def stored(self) -> dict[str, Any]:
@@ -49,11 +55,16 @@ class ThresholdChoice:
 
 
 def chosen_threshold(
-    scanned: Sequence[ScannedStream], learned: SpottingModel, labels: Sequence[str], thresholds: Sequence[float]
+    scanned: Sequence[ScannedStream],
+    learned: SpottingModel,
+    labels: Sequence[str],
+    thresholds: Sequence[float],
+    prior: Prior,
 ) -> ThresholdChoice:
     """Search the streams with each threshold, and choose the best after smoothing over neighbouring ones."""
     judged = [Judged.of(each, learned) for each in scanned]
-    scores = [event_scores(found(judged, learned, labels, threshold)) for threshold in thresholds]
+    by_threshold = (found(judged, learned, labels, threshold) for threshold in thresholds)
+    scores, precisions = zip(*((event_scores(own), precision(own, prior)) for own in by_threshold), strict=True)
     worth = np.array([_worth(score) for score in scores])
     smoothed = np.convolve(np.pad(worth, 1, mode="edge"), np.full(3, 1 / 3), mode="valid")
     counted = scores[0].background_min >= SHORTEST_BACKGROUND_MIN
@@ -63,7 +74,30 @@ def chosen_threshold(
         float(smoothed.max()),
         np.minimum.accumulate(rates).tolist() if rates else [],
         [score.event.recall for score in scores],
+        list(precisions),
     )
+
+
+def precision(of: Found, prior: Prior) -> float:
+    """Return the share of what was found in which any action is done, as if the prior's segments had been found, too.
+
+    What the action is called counts for nothing: how often that is right, the verifier knows.
+    """
+    by_person: defaultdict[tuple[str, int], list[tuple[int, int]]] = defaultdict(list)
+    for truth in of.truths:
+        by_person[truth.file, truth.agent].append((truth.start_ns, truth.end_ns))
+    bounds_ns = {person: np.array(own) for person, own in by_person.items()}
+    acting = [each for each in of.detections if (each.file, each.agent) in bounds_ns]
+    done = sum(_holds_one(each, bounds_ns[each.file, each.agent]) for each in acting)
+    return (done + prior.precision_segments * prior.precision) / (len(of.detections) + prior.precision_segments)
+
+
+def _holds_one(detection: Detection, bounds_ns: NDArray[np.int64]) -> bool:
+    """Tell whether a segment found has enough in common with one of the actions (n, 2) of its person."""
+    starts_ns, ends_ns = bounds_ns.T
+    common_ns = np.minimum(ends_ns, detection.end_ns) - np.maximum(starts_ns, detection.start_ns)
+    shorter_ns = np.minimum(ends_ns - starts_ns, detection.end_ns - detection.start_ns)
+    return bool((common_ns >= COMMON_SHARE * shorter_ns).any())
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,9 @@ The search uses only past postures and their stamps, so live and replayed stream
    overlaps more is dropped.
 5. The gate. The classifier recognises the window like a marked segment. A window recognised as `unknown` is not
    published.
+6. Familiarity. People mark where an action is done; a part of what the search finds is none, though it may look like
+   one. The familiarity of a found segment is therefore that of a marked one, multiplied by the precision: the share of
+   found segments in which any action was done, counted on people left out of the training.
 
 After half a second without a usable frame the search starts again. Partial actions come from the window with the
 largest completeness. A logistic regression, fitted on people left out of the training, computes their confidence from

@@ -93,7 +93,7 @@ class PyramidSpotter(Spotter):
     def __init__(self, pool: Pool, labels: Sequence[str], learned: SpottingModel, options: SpottingOptions) -> None:
         self._pool, self._labels, self._learned = pool, labels, learned
         metadata = learned.metadata
-        self._threshold = metadata.threshold_for(options.false_alarms_per_min)
+        self.use(options)
         self._interval_ns = round(metadata.interval_s * SECOND_NS)
         longest_ns = round(metadata.window_durations_s[-1] * SECOND_NS)
         self._decoder = learned.decoder()
@@ -104,7 +104,8 @@ class PyramidSpotter(Spotter):
 
     def use(self, options: SpottingOptions) -> None:
         """Go on with the threshold of other options, and all that was seen so far."""
-        self._threshold = self._learned.metadata.threshold_for(options.false_alarms_per_min)
+        metadata, asked = self._learned.metadata, options.false_alarms_per_min
+        self._threshold, self._precision = metadata.threshold_for(asked), metadata.precision_for(asked)
 
     def step(self, frame: Frame) -> Spotted:
         """Receive the next frame, valid or not; return what it shows."""
@@ -131,7 +132,7 @@ class PyramidSpotter(Spotter):
         segments = []
         for each in decided:
             first = self._recent.between(each.start_ns, each.end_ns)[0]
-            segments.append(SpottedSegment(first.stamp_ns, each.end_ns, self._labels[each.action]))
+            segments.append(SpottedSegment(first.stamp_ns, each.end_ns, self._labels[each.action], self._precision))
         return Spotted(tuple(segments), self._ongoing)
 
     def _likeliest(self, starts_ns: Sequence[int], now_ns: int, completeness: list[list[float]]) -> Ongoing | None:

@@ -104,6 +104,8 @@ class PyramidSpottingMetadata(SpottingMetadata):
             return "the windows or thresholds of its search do not rise"
         if len(self.false_alarms_per_min) not in (0, len(self.thresholds)):
             return "the false alarms of its search are not those of its thresholds"
+        if len(self.precisions) not in (0, len(self.thresholds)):
+            return "the precisions of its search are not those of its thresholds"
         return None
 
 
