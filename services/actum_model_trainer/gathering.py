@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from actum.arrays import Array, Floats
+from actum.arrays import Floats
 from actum_model_trainer.augmentation import Variant, augmentation_for, variants
 from actum_model_trainer.background import negatives_of
 from actum_model_trainer.basis import Basis
@@ -15,6 +15,7 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, digest_of_streams
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.training_data import SampleMeasures, TrainingData, duration_s
+from som_classifier.convolutions import Floats32, resampled
 from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid
@@ -79,7 +80,7 @@ def gathered(
         pooling.basis = _basis_of_some(pooling, taught, preset)
     pooled = pooling.vectors(taught.samples, taught.augmented, preset.stages, progress=progress)
     strange = _background(background, taught.samples, preset, taught.mirrors, seed)
-    convolved, basis = _convolved(taught.augmented, pooled[-1], strange, preset, seed), None
+    convolved, basis = _convolved(taught, pooled[-1], strange, preset, seed), None
     if pooling.basis is not None:
         basis = Basis.of(convolved.taught, MANY_DIRECTIONS)
         convolved = convolved.in_basis(basis)
@@ -105,16 +106,16 @@ def _background(
     return windows, [[next(variants(window, preset, mirrors, rng))] for window in windows]
 
 
-def _convolved(
-    augmented: Sequence[Sequence[Variant]], pooled: PooledVectors, strange: Strange, preset: PyramidPreset, seed: int
-) -> Convolved:
+def _convolved(taught: Taught, pooled: PooledVectors, strange: Strange, preset: PyramidPreset, seed: int) -> Convolved:
     """Convolve the same variants that are pooled, and the background."""
-    beside = [variant.postures for (variant,) in strange[1]]
-    taught = postures_of(augmented, pooled)
-    return Convolved.of(taught, beside, preset.convolutions.biases, np.random.default_rng(seed))
+    beside = [resampled(window.stamps_ns, variant.postures) for window, (variant,) in zip(*strange, strict=True)]
+    shown = series_of(taught.samples, taught.augmented, pooled)
+    return Convolved.of(shown, beside, preset.convolutions.biases, np.random.default_rng(seed))
 
 
-def postures_of(augmented: Sequence[Sequence[Variant]], pooled: PooledVectors) -> list[Array]:
-    """Return the postures of the variants that were pooled, by vector."""
+def series_of(
+    samples: Sequence[SegmentSample], augmented: Sequence[Sequence[Variant]], pooled: PooledVectors
+) -> list[Floats32]:
+    """Return the variants that were pooled, resampled for the convolutions, by vector."""
     rows = zip(pooled.sample_indices.tolist(), pooled.variant_indices.tolist(), strict=True)
-    return [augmented[sample][variant].postures for sample, variant in rows]
+    return [resampled(samples[sample].stamps_ns, augmented[sample][variant].postures) for sample, variant in rows]
