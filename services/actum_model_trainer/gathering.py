@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from actum.arrays import Floats
+from actum.messages import NONE
 from actum_model_trainer.augmentation import Variant, augmentation_for, variants
 from actum_model_trainer.background import negatives_of
 from actum_model_trainer.basis import Basis
@@ -21,7 +23,7 @@ from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid
 
 Strange = tuple[Sequence[SegmentSample], Sequence[Sequence[Variant]]]
-"""Windows of movement that nobody taught, and each as the classifier reads it, its only variant."""
+"""Windows of movement that nobody taught, and a single variant of each, as the classifier reads it."""
 MANY_DIRECTIONS = 1024
 """Directions in which the vectors of many samples are known: at least 99.7 % of their variance lies in them."""
 
@@ -99,11 +101,19 @@ def _basis_of_some(pooling: Pooling, taught: Taught, preset: PyramidPreset) -> B
 def _background(
     streams: Sequence[LabelledStream], samples: Sequence[SegmentSample], preset: PyramidPreset, mirrors: bool, seed: int
 ) -> Strange:
-    """Draw the background's windows, each read as the classifier reads it."""
+    """Draw the background's windows, each read as the classifier reads it, counterexamples in all variants.
+
+    A counterexample that is shown in fewer variants than an example counts less than that.
+    """
     rng = np.random.default_rng(seed)
     durations_s = np.array([duration_s(sample) for sample in samples])
     windows = negatives_of(streams, durations_s, preset.background, rng)
-    return windows, [[next(variants(window, preset, mirrors, rng))] for window in windows]
+    shown = [
+        (window, variant)
+        for window in windows
+        for variant in islice(variants(window, preset, mirrors, rng), None if window.label == NONE else 1)
+    ]
+    return [window for window, _ in shown], [[variant] for _, variant in shown]
 
 
 def _convolved(taught: Taught, pooled: PooledVectors, strange: Strange, preset: PyramidPreset, seed: int) -> Convolved:

@@ -89,7 +89,7 @@ class Convolutions:
     biases: Floats32
 
     def responses(self, series: Floats32) -> Floats32:
-        """Return the response of each filter to a series (COORDINATES, INSTANTS) at each instant, (FILTERS, INSTANTS)."""
+        """Return each filter's response at each instant of a series (COORDINATES, INSTANTS), (FILTERS, INSTANTS)."""
         inputs = self._inputs(series).reshape(len(DILATED), len(KERNELS), INSTANTS)
         padded = np.zeros((*inputs.shape[:2], INSTANTS + 2 * LONGEST_REACH), np.float32)
         padded[:, :, LONGEST_REACH : LONGEST_REACH + INSTANTS] = inputs
