@@ -30,6 +30,7 @@ PAGES = [
 RESULTS = {
     "Recognition": "benchmarks/recognition/results",
     "Recognition: what was tried": "benchmarks/recognition/README",
+    "Recognition: what was tried on the second opinion": "benchmarks/recognition/opinion",
     "Recognition: what was tried on MSR": "benchmarks/recognition/msr",
     "Without marks": "benchmarks/continuous/results",
     "Without marks: what was tried": "benchmarks/continuous/README",

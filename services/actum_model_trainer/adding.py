@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from actum_model_trainer.augmentation import augmentation_for, variants
 from actum_model_trainer.basis import Basis
-from actum_model_trainer.gathering import postures_of
+from actum_model_trainer.gathering import series_of
 from actum_model_trainer.kept import KeptWindows, kept_arrays, kept_data, pooled_basis
 from actum_model_trainer.layers_above import fitted_model
 from actum_model_trainer.left_out_by_coordinates import with_what_was_left_out
@@ -23,7 +23,6 @@ from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.spotting.adding_heads import with_added_heads
 from actum_model_trainer.training_data import SampleMeasures, TrainingData
-from som_classifier.convolutions import resampled
 from som_classifier.model import Arrays
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_metadata import PyramidMetadata
@@ -102,7 +101,7 @@ class _Measured:
         augmented = [list(variants(sample, augmentation, mirrors, rng)) for sample in samples]
         pooling = Pooling(model.first, model.pyramid, mirrors)
         stages = pooling.vectors(samples, augmented, preset.stages, beside=len(before.labels))
-        features = [convolutions.features(resampled(each)) for each in postures_of(augmented, stages[-1])]
+        features = [convolutions.features(each) for each in series_of(samples, augmented, stages[-1])]
         measures = SampleMeasures.of(samples, model.first, [of_sample[0].postures for of_sample in augmented])
         return cls(measures, stages, np.stack(features))
 

@@ -75,10 +75,11 @@ def _clip(stream: LabelledStream, segment: tuple[int, int, str]) -> LabelledStre
 def negatives_of(
     streams: Sequence[LabelledStream], durations_s: Array, count: int, rng: np.random.Generator
 ) -> list[SegmentSample]:
-    """Return the counterexamples of streams, and windows that are drawn where there is more than these."""
+    """Return the counterexamples of streams, labelled so, and windows that are drawn where there is more than these."""
     others = [stream for stream in streams if not stream.is_counterexample]
     clips = [each for each in counterexamples(streams) if len(each.stamps_ns) >= FEWEST_FRAMES]
-    return [*(_cut(clip, 0, len(clip.stamps_ns)) for clip in clips), *windows_of(others, durations_s, count, rng)]
+    cut = [replace(_cut(clip, 0, len(clip.stamps_ns)), label=NONE) for clip in clips]
+    return [*cut, *windows_of(others, durations_s, count, rng)]
 
 
 def windows_of(

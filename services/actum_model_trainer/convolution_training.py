@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from actum.arrays import Array
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.discriminants import Discriminants
-from som_classifier.convolutions import COORDINATES, FILTERS, WEIGHTS, Convolutions, Floats32, resampled
+from som_classifier.convolutions import COORDINATES, FILTERS, WEIGHTS, Convolutions, Floats32
 
 GOLDEN = (np.sqrt(5) - 1) / 2
 """Multiples of it modulo 1 are spread evenly over quantiles, however many there are."""
@@ -56,15 +55,14 @@ class Convolved:
 
     @classmethod
     def of(
-        cls, taught: Sequence[Array], background: Sequence[Array], biases: int, rng: np.random.Generator
+        cls, taught: Sequence[Floats32], background: Sequence[Floats32], biases: int, rng: np.random.Generator
     ) -> "Convolved":
-        """Draw convolutions for sequences (frames, 15, 3), as the classifier reads them, and apply them."""
-        series = [resampled(postures) for postures in taught]
-        convolutions = drawn_convolutions(series, biases, rng)
-        features = np.stack([convolutions.features(each) for each in series])
+        """Draw convolutions for resampled sequences, as the classifier reads them, and apply them."""
+        convolutions = drawn_convolutions(taught, biases, rng)
+        features = np.stack([convolutions.features(each) for each in taught])
         spread = features.std(axis=0)
         spread[np.ptp(features, axis=0) == 0] = 1.0  # rounding makes the deviation of some constants 3e-8
-        beside = np.array([convolutions.features(resampled(each)) for each in background], np.float32)
+        beside = np.array([convolutions.features(each) for each in background], np.float32)
         return cls(convolutions, spread, features / spread, beside.reshape(-1, len(spread)) / spread)
 
     def in_basis(self, basis: Basis) -> "Convolved":

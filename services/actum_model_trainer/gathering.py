@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
-from actum.arrays import Array, Floats
+from actum.arrays import Floats
+from actum.messages import NONE
 from actum_model_trainer.augmentation import Variant, augmentation_for, variants
 from actum_model_trainer.background import negatives_of
 from actum_model_trainer.basis import Basis
@@ -15,12 +17,13 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, digest_of_streams
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.training_data import SampleMeasures, TrainingData, duration_s
+from som_classifier.convolutions import Floats32, resampled
 from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid import Pyramid
 
 Strange = tuple[Sequence[SegmentSample], Sequence[Sequence[Variant]]]
-"""Windows of movement that nobody taught, and each as the classifier reads it, its only variant."""
+"""Windows of movement that nobody taught, and a single variant of each, as the classifier reads it."""
 MANY_DIRECTIONS = 1024
 """Directions in which the vectors of many samples are known: at least 99.7 % of their variance lies in them."""
 
@@ -79,7 +82,7 @@ def gathered(
         pooling.basis = _basis_of_some(pooling, taught, preset)
     pooled = pooling.vectors(taught.samples, taught.augmented, preset.stages, progress=progress)
     strange = _background(background, taught.samples, preset, taught.mirrors, seed)
-    convolved, basis = _convolved(taught.augmented, pooled[-1], strange, preset, seed), None
+    convolved, basis = _convolved(taught, pooled[-1], strange, preset, seed), None
     if pooling.basis is not None:
         basis = Basis.of(convolved.taught, MANY_DIRECTIONS)
         convolved = convolved.in_basis(basis)
@@ -98,23 +101,31 @@ def _basis_of_some(pooling: Pooling, taught: Taught, preset: PyramidPreset) -> B
 def _background(
     streams: Sequence[LabelledStream], samples: Sequence[SegmentSample], preset: PyramidPreset, mirrors: bool, seed: int
 ) -> Strange:
-    """Draw the background's windows, each read as the classifier reads it."""
+    """Draw the background's windows, each read as the classifier reads it, counterexamples in all variants.
+
+    A counterexample that is shown in fewer variants than an example counts less than that.
+    """
     rng = np.random.default_rng(seed)
     durations_s = np.array([duration_s(sample) for sample in samples])
     windows = negatives_of(streams, durations_s, preset.background, rng)
-    return windows, [[next(variants(window, preset, mirrors, rng))] for window in windows]
+    shown = [
+        (window, variant)
+        for window in windows
+        for variant in islice(variants(window, preset, mirrors, rng), None if window.label == NONE else 1)
+    ]
+    return [window for window, _ in shown], [[variant] for _, variant in shown]
 
 
-def _convolved(
-    augmented: Sequence[Sequence[Variant]], pooled: PooledVectors, strange: Strange, preset: PyramidPreset, seed: int
-) -> Convolved:
+def _convolved(taught: Taught, pooled: PooledVectors, strange: Strange, preset: PyramidPreset, seed: int) -> Convolved:
     """Convolve the same variants that are pooled, and the background."""
-    beside = [variant.postures for (variant,) in strange[1]]
-    taught = postures_of(augmented, pooled)
-    return Convolved.of(taught, beside, preset.convolutions.biases, np.random.default_rng(seed))
+    beside = [resampled(window.stamps_ns, variant.postures) for window, (variant,) in zip(*strange, strict=True)]
+    shown = series_of(taught.samples, taught.augmented, pooled)
+    return Convolved.of(shown, beside, preset.convolutions.biases, np.random.default_rng(seed))
 
 
-def postures_of(augmented: Sequence[Sequence[Variant]], pooled: PooledVectors) -> list[Array]:
-    """Return the postures of the variants that were pooled, by vector."""
+def series_of(
+    samples: Sequence[SegmentSample], augmented: Sequence[Sequence[Variant]], pooled: PooledVectors
+) -> list[Floats32]:
+    """Return the variants that were pooled, resampled for the convolutions, by vector."""
     rows = zip(pooled.sample_indices.tolist(), pooled.variant_indices.tolist(), strict=True)
-    return [augmented[sample][variant].postures for sample, variant in rows]
+    return [resampled(samples[sample].stamps_ns, augmented[sample][variant].postures) for sample, variant in rows]

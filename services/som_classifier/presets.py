@@ -255,7 +255,7 @@ PYRAMID = PyramidPreset(
     relative_concept_contrast=40.0,
     beta=0.05,
     epochs=10,
-    convolutions=ConvolutionPreset(biases=10, shrinkage=0.3, opinion_weight=0.5, verifier_weight=0.75),
+    convolutions=ConvolutionPreset(biases=5, shrinkage=0.3, opinion_weight=0.75, verifier_weight=0.75),
     known_share=0.95,
     found_share=0.8,
     background=300,

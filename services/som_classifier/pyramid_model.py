@@ -251,7 +251,7 @@ class PyramidModel(Model):
         of_frames = [frame.kinematics.posture for frame in frames if frame.kinematics is not None]
         postures = stacked(list(map(np.ascontiguousarray, of_frames)), *of_frames[0].shape)
         as_read = mirrored(postures) if self.reads_in_mirror(activities) else postures
-        features = self.opinion.convolutions.features(resampled(as_read))
+        features = self.opinion.convolutions.features(resampled(stamps_ns, as_read))
         pooled = self._pooled(activities)
         means = averaged(stamps_ns, postures)
         return Evidence(pooled, features, log_movements(means), movement_m(means))

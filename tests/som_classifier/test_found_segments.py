@@ -408,9 +408,9 @@ def _unnumbered(message: Message) -> Message:
 
 
 CHANGES: tuple[dict[str, object], ...] = (
-    {"publish_maps": True}, {"cooldown_s": {"push": 3.0}}, {"disabled_actions": ["push"]},
-    {"enabled_actions": ["lift"]}, {"false_alarms_per_min": 2.5}, {"shortest_pause_s": 0.1}, {"segments": "auto"},
-    {"segments": "auto", "false_alarms_per_min": 0.1, "publish_maps": True},
+    {"publish_maps": True}, {"cooldown_s": {"swing": 3.0}}, {"disabled_actions": ["swing"]},
+    {"enabled_actions": ["lift", "push"]}, {"false_alarms_per_min": 2.5}, {"shortest_pause_s": 0.1},
+    {"segments": "auto"}, {"segments": "auto", "false_alarms_per_min": 0.1, "publish_maps": True},
 )  # fmt: skip
 
 

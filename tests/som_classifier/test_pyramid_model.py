@@ -86,7 +86,10 @@ def test_an_answer_is_cosines_and_the_share_of_their_softmax(sample: SegmentSamp
 def test_a_complete_segment_is_scored_by_maps_and_convolutions(sample: SegmentSample) -> None:
     frames, opinion = encoded(model(), sample), model().opinion
     of_maps = model().scores([frame.activity for frame in frames], [0.0, 0.0, 1.0])
-    own = opinion.convolutions.features(resampled(read_by(model(), sample))) @ opinion.axes + opinion.offsets
+    own = (
+        opinion.convolutions.features(resampled(sample.stamps_ns, read_by(model(), sample))) @ opinion.axes
+        + opinion.offsets
+    )
     expected = (of_maps + opinion.weight * own) / (1 + opinion.weight)
     np.testing.assert_allclose(model().complete_scores(model().evidence(frames)), expected, atol=1e-5)
 
