@@ -46,8 +46,8 @@ from unmarked import Scene, bounds_ns, encoded_live, recorded, scene, spotting_m
 LABELS = ["lift", "push", "swing"]
 METADATA = PyramidSpottingMetadata(
     interval_s=0.1, lag_s=0.2, overlap=0.0, duration_weight=0.0, window_durations_s=[1.0], log_duration_means=[0.0] * 3,
-    log_duration_sds=[0.3] * 3, thresholds=[0.45], false_alarms_per_min=[], recalls=[], threshold=0.45,
-    probability=[1.0, 0.0], background_s=0.0,
+    log_duration_sds=[0.3] * 3, thresholds=[0.45], false_alarms_per_min=[], recalls=[], precisions=[1.0],
+    threshold=0.45, probability=[1.0, 0.0], background_s=0.0,
 )  # fmt: skip
 
 

@@ -19,7 +19,7 @@ Answers = Mapping[tuple[int, int], float]
 METADATA = PyramidSpottingMetadata(
     interval_s=0.1, lag_s=0.2, overlap=0.15, duration_weight=0.0, window_durations_s=[0.5, 1.0],
     log_duration_means=[0.0], log_duration_sds=[0.3], thresholds=[0.5], false_alarms_per_min=[], recalls=[1.0],
-    threshold=0.5, probability=[8.0, -4.0], background_s=60.0,
+    precisions=[1.0], threshold=0.5, probability=[8.0, -4.0], background_s=60.0,
 )  # fmt: skip
 
 
@@ -147,9 +147,8 @@ def test_what_is_found_says_how_often_an_action_is_done_in_what_the_threshold_in
 def test_how_many_false_alarms_are_accepted_may_be_changed_in_the_middle_of_an_action(
     accepted_per_min: float, is_found: bool
 ) -> None:
-    metadata = METADATA.model_copy(
-        update={"thresholds": [0.5, 0.95], "false_alarms_per_min": [1.0, 0.1], "recalls": [1.0, 0.5]}
-    )
+    counted = {"false_alarms_per_min": [1.0, 0.1], "recalls": [1.0, 0.5], "precisions": [1.0, 1.0]}
+    metadata = METADATA.model_copy(update={"thresholds": [0.5, 0.95], **counted})
     learned = SpottingModel(CompletenessHeads(np.eye(1, dtype=np.float32), np.zeros(1, np.float32)), metadata)
     spotter = PyramidSpotter(Scripted(WAVE).pooled, ["wave"], learned, SpottingOptions())
     shown = []

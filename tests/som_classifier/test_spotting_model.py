@@ -29,8 +29,8 @@ from unmarked import spotting_model
 METADATA = PyramidSpottingMetadata(
     interval_s=0.1, lag_s=0.2, overlap=0.15, duration_weight=0.1, window_durations_s=[0.5, 1.0, 2.0],
     log_duration_means=[log(0.5), log(2.0)], log_duration_sds=[0.2, 0.5], thresholds=[0.3, 0.5, 0.7, 0.9],
-    false_alarms_per_min=[4.0, 1.5, 1.5, 0.5], recalls=[1.0, 0.9, 0.8, 0.5], threshold=0.7, probability=[6.0, -3.0],
-    background_s=60.0,
+    false_alarms_per_min=[4.0, 1.5, 1.5, 0.5], recalls=[1.0, 0.9, 0.8, 0.5], precisions=[0.5, 0.7, 0.8, 1.0],
+    threshold=0.7, probability=[6.0, -3.0], background_s=60.0,
 )  # fmt: skip
 HEADS = CompletenessHeads(np.zeros((3, 2), np.float32), np.zeros(2, np.float32))
 LEARNED = SpottingModel(HEADS, METADATA)
@@ -128,12 +128,8 @@ def test_where_no_false_alarms_could_be_counted_the_chosen_threshold_stands() ->
 
 
 def test_a_precision_is_that_of_the_threshold_in_use_interpolated_between_those_it_was_counted_at() -> None:
-    counted = METADATA.model_copy(update={"precisions": [0.5, 0.7, 0.8, 1.0], "threshold": 0.6})
+    counted = METADATA.model_copy(update={"threshold": 0.6})
     assert [counted.precision_for(asked) for asked in (None, 4.0, 0.5)] == pytest.approx([0.75, 0.5, 1.0])
-
-
-def test_where_no_precision_was_counted_familiarity_stays_what_it_was() -> None:
-    assert METADATA.precision_for(None) == 1.0
 
 
 def test_a_probability_is_logistic() -> None:
@@ -161,17 +157,6 @@ def test_a_file_brings_back_the_same_search(tmp_path: Path) -> None:
     assert loaded.id == model.id and loaded.metadata.spotting == model.metadata.spotting
     np.testing.assert_array_equal(loaded.heads.axes, model.heads.axes)
     np.testing.assert_array_equal(loaded.heads.offsets, model.heads.offsets)
-
-
-def test_a_file_from_before_precisions_were_counted_finds_as_before(tmp_path: Path) -> None:
-    path = saved(tmp_path)
-    with np.load(path) as file:
-        contents = dict(file)
-    metadata = json.loads(str(contents["metadata"]))
-    assert len(metadata["spotting"].pop("precisions")) == len(metadata["spotting"]["thresholds"])
-    np.savez(path, **contents | {"metadata": np.array(json.dumps(metadata))})
-    old = load_model(path).spotting
-    assert old is not None and old.precision_for(None) == 1.0
 
 
 def test_a_file_from_before_there_was_a_search_loads_and_cannot_search(tmp_path: Path) -> None:
@@ -202,6 +187,7 @@ def test_a_file_from_before_there_was_a_search_loads_and_cannot_search(tmp_path:
         {"thresholds": []},
         {"thresholds": [0.3, 0.75, 0.6, 0.9]},
         {"false_alarms_per_min": [1.0]},
+        {"precisions": []},
         {"precisions": [0.9]},
         {"precisions": [1.5] * 14},
         {"window_durations_s": []},

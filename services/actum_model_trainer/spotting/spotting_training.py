@@ -146,6 +146,7 @@ def untuned(
         thresholds=list(search.thresholds),
         false_alarms_per_min=[],
         recalls=[],
+        precisions=[],
         threshold=search.thresholds[0],
         probability=[1.0, 0.0],
         background_s=60 * background_min(marked.seen, marked.truths),

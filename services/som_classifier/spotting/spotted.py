@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Annotated
 
-import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
@@ -91,8 +90,6 @@ class SpottingMetadata(BaseModel):
         thresholds: what a window's score must exceed, rising: one for each entry of `false_alarms_per_min`.
         false_alarms_per_min: cross-validated false segments in a minute of background, by threshold; empty where there
             was no background to count them in.
-        precisions: cross-validated share of the segments found in which any action is done, by threshold; empty in
-            files of versions that did not count it.
         threshold: the one that is used unless a rate of false alarms is asked for.
         background_s: how long people did none of the actions in training.
     """
@@ -101,7 +98,6 @@ class SpottingMetadata(BaseModel):
 
     thresholds: Annotated[list[Finite], Field(min_length=1)]
     false_alarms_per_min: list[Finite]
-    precisions: list[Annotated[float, Field(ge=0, le=1)]] = []
     threshold: Finite
     background_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
 
@@ -115,15 +111,6 @@ class SpottingMetadata(BaseModel):
             return self.threshold
         rates = zip(self.thresholds, self.false_alarms_per_min, strict=True)
         return next((threshold for threshold, rate in rates if rate <= false_alarms_per_min), self.thresholds[-1])
-
-    def precision_for(self, false_alarms_per_min: float | None) -> float:
-        """Return the share of what is found with the threshold for this rate in which any action is done.
-
-        It is interpolated between thresholds, and 1 where it was not counted.
-        """
-        if not self.precisions:
-            return 1.0
-        return float(np.interp(self.threshold_for(false_alarms_per_min), self.thresholds, self.precisions))
 
 
 class Spotter(ABC):

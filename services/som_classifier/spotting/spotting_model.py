@@ -83,6 +83,7 @@ class PyramidSpottingMetadata(SpottingMetadata):
         log_duration_means: for each action, the mean of the logarithm of its durations (s).
         log_duration_sds: for each action, the standard deviation of that logarithm.
         recalls: the cross-validated share of actions that are found, by threshold.
+        precisions: the cross-validated share of the segments found in which any action is done, by threshold.
         probability: slope and intercept of the logistic regression that turns a head's answer into a probability.
     """
 
@@ -94,6 +95,7 @@ class PyramidSpottingMetadata(SpottingMetadata):
     log_duration_means: list[Finite]
     log_duration_sds: list[Positive]
     recalls: list[Finite]
+    precisions: list[Annotated[float, Field(ge=0, le=1)]]
     probability: Annotated[list[Finite], Field(min_length=2, max_length=2)]
 
     def problem(self, actions: int) -> str | None:
@@ -104,9 +106,16 @@ class PyramidSpottingMetadata(SpottingMetadata):
             return "the windows or thresholds of its search do not rise"
         if len(self.false_alarms_per_min) not in (0, len(self.thresholds)):
             return "the false alarms of its search are not those of its thresholds"
-        if len(self.precisions) not in (0, len(self.thresholds)):
+        if len(self.precisions) != len(self.thresholds):
             return "the precisions of its search are not those of its thresholds"
         return None
+
+    def precision_for(self, false_alarms_per_min: float | None) -> float:
+        """Return the share of what is found with the threshold for this rate in which any action is done.
+
+        It is interpolated between thresholds.
+        """
+        return float(np.interp(self.threshold_for(false_alarms_per_min), self.thresholds, self.precisions))
 
 
 @dataclass(frozen=True, eq=False)
