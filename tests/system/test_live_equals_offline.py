@@ -32,7 +32,10 @@ pytestmark = [pytest.mark.system, pytest.mark.data]
 
 TRAINING_PEOPLE = ("1", "3", "5", "7", "9")
 TEST_PEOPLE = ("2", "4", "6", "8", "10")
-SPEED = 8.0
+SPEED = 4.0
+"""Speed at which no frame may be lost: publishers keep 300, here 2.5 s, and a busy machine may stall for longer than
+half of that."""
+HIGH_SPEED = 8.0
 LIVE_MINUTES = 3.0
 TRAINED = (QUICK, pytest.param(QUICK_PAPER, marks=pytest.mark.long))
 
@@ -156,7 +159,7 @@ def test_all_msr_test_sequences_by_the_command_line(running: System, msr: Path, 
     predictions = json.loads(report.read_text())["predictions"]
     assert len(predictions) == 273
     began_s = time.monotonic()
-    events = play_live(running, model, [Path(p["file"]) for p in predictions], SPEED, expected=273)
+    events = play_live(running, model, [Path(p["file"]) for p in predictions], HIGH_SPEED, expected=273)
     minutes = (time.monotonic() - began_s) / 60
     offline = {p["segment_id"]: p["predicted"] for p in predictions}
     assert {e.segment_id for e in events} == set(offline)
