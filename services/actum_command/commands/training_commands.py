@@ -26,20 +26,21 @@ from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of recordings")]
 PRESET_HELP = (
-    f"kind of model to train: {PAPER.name} is the method of the paper that actum implements (Gharaee et al. 2017); "
-    f"{DEFAULT.name} is more accurate"
+    f"kind of model to train. {PAPER.name}: the method of the paper that actum implements (Gharaee et al. 2017). "
+    f"{DEFAULT.name} (default): a more accurate method"
 )
 SET_HELP = (
     f"change a setting of --preset {PAPER.name}; may be repeated. axes=upright (default): one coordinate axis "
-    "stays vertical, and the others turn smoothly with the body. axes=posture: all axes turn with the body in each "
-    "frame. origin=torso (default) or origin=hips: the point from which positions are measured. attention=PART: only "
-    f"this body part's joints are used: {', '.join(part for part in ATTENTIONS if part != MOVING)} or {MOVING} "
-    "(default: the part that moves most)"
+    "stays vertical, and the other axes turn smoothly with the body. axes=posture: all axes turn with the body in each "
+    "frame. origin=torso (default) or origin=hips: the point from which positions are measured. attention=PART: use "
+    f"only the joints of PART, which is {', '.join(part for part in ATTENTIONS if part != MOVING)} or {MOVING} "
+    f"({MOVING} is the default, and means the part that moves most)"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
-    "examples of movement that the model learns to ignore. 'shipped' (default): half an hour of simulated people, "
-    "supplied with actum; 'none': no examples; otherwise a recording (.mcap) or a folder of recordings. May be repeated"
+    "examples of background activity, which the model learns to ignore. shipped (default): half an hour of simulated "
+    "people, supplied with actum. none: no examples. FILE: a recording (.mcap) or a folder of recordings. May be "
+    "repeated"
 )
 SHIPPED, NONE = "shipped", "none"
 PRESETS_SHOWN = f"<{'|'.join(PRESETS)}>"
@@ -47,17 +48,18 @@ PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HE
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
 SeedOption = Annotated[int, typer.Option(min=0, help=SEED_HELP)]
 JOBS_HELP = (
-    "number of parts of a training that run at the same time; each part takes memory. Default: the number of "
-    "processors. The number does not change the model"
+    "number of threads for training. More threads train faster and take more memory, but train the same model. "
+    "Default: one thread per processor"
 )
 ADD_TO_HELP = (
-    "add the recorded examples to this model, which keeps its maps, instead of training a new one. The recordings may "
-    "show new actions or known ones. Takes about a second"
+    "add the examples in the recordings to this model, instead of training a new model. The examples may show new "
+    "actions or actions that the model knows already. The model's self-organizing maps do not change. Takes about a "
+    "second"
 )
 
 CONTINUE_HELP = (
-    "also train the prediction of how a person's posture goes on in the next second. Takes some seconds, and makes the "
-    "model file larger"
+    "also train a prediction of the person's posture in the next second. This prediction takes some seconds to train, "
+    "and makes the model file larger"
 )
 
 
