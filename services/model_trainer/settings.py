@@ -27,7 +27,7 @@ class Settings(NodeSettings):
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file to start with. The trainer copies this file to --model at the start and whenever this file "
-            "changes, and never writes to this file. Default: no such file"
+            "a model file to start with. The trainer copies this file to --model once, and again whenever this file "
+            "changes. The trainer never writes to this file. Default: no such file"
         ),
     )

@@ -45,7 +45,7 @@ class Settings(ServiceSettings):
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
         "jazzy",
         description=(
-            "the ROS 2 distribution of your nodes. With a wrong distribution, no messages may arrive, because humble "
+            "the ROS 2 distribution of your nodes. A wrong distribution can prevent all communication, because humble "
             "names topics in Zenoh differently from jazzy and kilted"
         ),
     )

@@ -41,9 +41,9 @@ class Settings(ServiceSettings):
     everyday: Choice = Field(
         "none",
         description=(
-            "which background activities, such as scratching, the simulated person does between the actions. none: no "
-            "background activities. familiar: the kinds meant for training a model. all: all kinds, for testing a "
-            "model. only: all kinds, and no actions between them"
+            "what the simulated person does. none: only actions. familiar: actions, and some kinds of background "
+            "activities, such as scratching, to train a model with. all: actions, and all kinds of background "
+            "activities, to test a model with. only: all kinds of background activities, but no actions"
         ),
     )
     minutes: float = Field(

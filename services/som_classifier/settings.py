@@ -90,15 +90,15 @@ class Settings(RememberingSettings):
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "of the actions that the classifier finds by itself, publish only those named here, such as wave,clap. "
-            "This option does not affect actions whose start and end another program marks. Default: all actions of "
-            "the model"
+            "actions, such as wave,clap: of the actions that the classifier finds by itself, publish only these. This "
+            "option does not affect actions whose start and end another program marks. Default: all actions of the "
+            "model are published"
         ),
     )
     disabled_actions: Names = Field(
         frozenset(),
         description=(
-            "actions that are not published if the classifier finds them by itself, such as wave,clap. This option "
+            "actions, such as wave,clap, that are not published if the classifier finds them by itself. This option "
             "does not affect actions whose start and end another program marks. Default: all actions are published"
         ),
     )

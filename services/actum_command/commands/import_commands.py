@@ -86,8 +86,8 @@ def msrc12(
 def bimacs(source: Source, out: Out) -> None:
     """Import OptiTrack motion capture of two hands and objects, labelled as in the KIT Bimanual Actions Dataset.
 
-    The folder contains files such as subject0_take0.csv. Each file becomes a recording with labelled segments of each
-    hand.
+    The folder SOURCE contains files such as subject0_take0.csv. Each file becomes a recording with labelled segments of
+    each hand.
     """
     _run(import_bimacs, source, out)
 
@@ -118,9 +118,8 @@ def video(
 ) -> None:
     """Import video clips that show one action each and are named after action and person, such as wave_anna_2.mp4.
 
-    Each clip becomes a recording with one labelled segment and without images. The command reads the camera's settings
-    from the environment variables ACTUM_POSE_MODEL, ACTUM_CALIBRATION or ACTUM_FIELD_OF_VIEW_DEG, ACTUM_MIRRORED and
-    ACTUM_PERSON_HEIGHT_M.
+    Each clip becomes a recording with one labelled segment and without images. These environment variables set the
+    camera: ACTUM_POSE_MODEL, ACTUM_CALIBRATION (or ACTUM_FIELD_OF_VIEW_DEG), ACTUM_MIRRORED and ACTUM_PERSON_HEIGHT_M.
     """
     with failing_on(ValueError):
         naming, settings = Naming.of(pattern, names), Settings(people=people)

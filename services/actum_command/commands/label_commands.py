@@ -55,9 +55,9 @@ def list_command(
 ) -> None:
     """List the marked segments of recordings, and whether training can use each segment.
 
-    A segment is one action with its start and end. The columns are: number, start, end, duration, segment id, label,
-    origin of the marks, person who acts, whether training can use the segment, answer of the classifier during the
-    recording and, if the recording has several sensors, the sensor.
+    A segment is one action with its start and end. Each line shows the number, start, end, duration, id and label of a
+    segment; then the origin of the marks, the person who acts, whether training can use the segment, and the
+    classifier's answer in the recording. If the recording has several sensors, the last column names the sensor.
     """
     recordings, all_lines = chosen(files, person, with_excluded), []
     with failing_on(RecordingError):

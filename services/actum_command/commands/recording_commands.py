@@ -61,8 +61,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             min=1,
             help=(
-                "number of times that the person will do the action --label. The command finds and labels each "
-                "repetition, and stops after the last one"
+                "number of times that the person will do the action that --label names. The command finds and labels "
+                "each repetition, and stops after the last repetition"
             ),
         ),
     ] = None,
@@ -110,8 +110,9 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 
     With --events, the command runs as a service that stores a history of recognised actions in the folder OUTPUT.
 
-    With --label and --times, the command labels the recording automatically. Example: actum record wave.mcap --label
-    wave --times 5
+    With --label and --times, the command labels the recording automatically. Example:
+
+    actum record wave.mcap --label wave --times 5
     """
     if events:
         keep_events(output, arguments_of(HISTORY, given))

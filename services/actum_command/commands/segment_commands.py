@@ -43,7 +43,9 @@ Id = Annotated[
 HandOption = Annotated[str | None, typer.Option(help="the hand that acts, left or right; default: not specified")]
 LabelOption = Annotated[
     str | None,
-    typer.Option(help="label of the action, such as wave, which 'actum record' stores for training. Default: no label"),
+    typer.Option(
+        help=("label of the action, such as wave. 'actum record' stores this label for training. Default: no label")
+    ),
 ]
 StampOption = Annotated[
     int | None,

@@ -122,7 +122,9 @@ def up(
             ),
         ),
     ] = False,
-    page: Annotated[bool, typer.Option("--page/--no-page", help="serve the web page and print its address")] = True,
+    page: Annotated[
+        bool, typer.Option("--page/--no-page", help="serve the web page and print its address; default: on")
+    ] = True,
     *,
     given: Given,
 ) -> None:

@@ -19,7 +19,7 @@ from actum_model_trainer.samples import LabelledStream, Samples
 from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.side_by_side import at_most
 from actum_model_trainer.training import add_to, train_to_spot, with_continuation
-from som_classifier.attention import ATTENTIONS, MOVING
+from som_classifier.attention import ALL, MOVING, PART_NAMES
 from som_classifier.model import Arrays, Model
 from som_classifier.model_loading import ModelError, kept_in, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
@@ -32,9 +32,9 @@ PRESET_HELP = (
 SET_HELP = (
     f"change a setting of --preset {PAPER.name}; may be repeated. axes=upright (default): one coordinate axis "
     "stays vertical, and the other axes turn smoothly with the body. axes=posture: all axes turn with the body in each "
-    "frame. origin=torso (default) or origin=hips: the point from which positions are measured. attention=PART: use "
-    f"only the joints of PART, which is {', '.join(part for part in ATTENTIONS if part != MOVING)} or {MOVING} "
-    f"({MOVING} is the default, and means the part that moves most)"
+    "frame. origin=torso (default) or origin=hips: the point from which positions are measured. "
+    f"attention={MOVING} (default): use only the joints of the body part that moves most. attention={ALL}: use all "
+    f"joints. attention={', '.join(PART_NAMES[:-1])} or {PART_NAMES[-1]}: use only the joints of this part"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
@@ -79,7 +79,7 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     jobs: Annotated[int | None, typer.Option(min=1, help=JOBS_HELP)] = None,
     continued: Annotated[bool, typer.Option("--continue", help=CONTINUE_HELP)] = False,
 ) -> None:
-    """Train a model on labelled recordings, and write it to a file for 'actum up --model'."""
+    """Train a model on labelled recordings, and write the model to a file for 'actum up --model'."""
     began_s = time.monotonic()
     refuse_place(output, ".npz")
     chosen_preset = preset_named(preset, settings or ())

@@ -38,7 +38,7 @@ def view(
         int, typer.Option(min=1, max=65535, help="port of the Rerun viewer's web page; used only with --web")
     ] = 9090,
 ) -> None:
-    """Show live streams or a recording in the Rerun viewer: people, objects, images, curves and events, until Ctrl-C.
+    """Show live streams or a recording in the Rerun viewer until Ctrl-C: people, objects, images, plots and events.
 
     The whole recording is loaded, so that you can move back and forth in the recording.
     """
