@@ -39,7 +39,7 @@ SegmentName = Annotated[
     str,
     typer.Argument(
         metavar="SEGMENT",
-        help=("number or id of the segment; 'actum label REC' prints the number of each segment in the first column"),
+        help="number or id of the segment; 'actum label REC' prints the number of each segment in the first column",
     ),
 ]
 Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action, such as wave")]

@@ -39,7 +39,7 @@ def watch(
         bool,
         typer.Option(
             "--held-back",
-            help=("also print the segments that the classifier found but did not publish, each with the reason"),
+            help="also print the segments that the classifier found but did not publish, each with the reason",
         ),
     ] = False,
     recorded: Annotated[

@@ -11,12 +11,12 @@ class Settings(ServiceSettings):
     history_file_mb: float = Field(
         16.0,
         gt=0,
-        description=("history of events: size of the current file (MB) at which the service starts the next file"),
+        description="history of events: size of the current file (MB) at which the service starts the next file",
     )
     history_file_hours: float = Field(
         24.0,
         gt=0,
-        description=("history of events: time (h) after which the service starts the next file"),
+        description="history of events: time (h) after which the service starts the next file",
     )
     history_keep_files: int | None = Field(
         None,
