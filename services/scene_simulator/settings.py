@@ -20,8 +20,8 @@ class Settings(ServiceSettings):
         0,
         ge=0,
         description=(
-            "which simulated person acts: any number from 0. Each number stands for a person with a different body "
-            "height, tempo and preferred hand"
+            "number that selects the simulated person, 0 or higher. Each number stands for a person with a different "
+            "body height, tempo and preferred hand"
         ),
     )
     seed: int = Field(

@@ -210,8 +210,8 @@ class SharedSettings(NodeSettings):
     share: bool = Field(
         False,
         description=(
-            "share the sensors among several processes of this service; start each of these processes with --share. "
-            "One process at a time serves a sensor; if that process ends, another process takes over within 2 s"
+            "let several processes of this service share the sensors; start each of the processes with --share. Each "
+            "sensor is served by one process at a time. If that process ends, another process takes over within 2 s"
         ),
     )
 

@@ -36,8 +36,8 @@ def draw(
     """Find the people in a video and draw their joints, to check the camera before use.
 
     The command writes one image that contains several pictures of the video. Check that people are found, and that left
-    and right are correct. These environment variables set the camera: ACTUM_POSE_MODEL, ACTUM_CALIBRATION (or
-    ACTUM_FIELD_OF_VIEW_DEG) and ACTUM_MIRRORED.
+    and right are correct. The camera's settings come from the environment variables ACTUM_POSE_MODEL, ACTUM_CALIBRATION
+    (or ACTUM_FIELD_OF_VIEW_DEG) and ACTUM_MIRRORED.
     """
     if not cv2.haveImageWriter(str(output)):
         fail(f"the file name {output} does not end in a known picture format: use .png or .jpg")

@@ -118,8 +118,9 @@ def video(
 ) -> None:
     """Import video clips that show one action each and are named after action and person, such as wave_anna_2.mp4.
 
-    Each clip becomes a recording with one labelled segment and without images. These environment variables set the
-    camera: ACTUM_POSE_MODEL, ACTUM_CALIBRATION (or ACTUM_FIELD_OF_VIEW_DEG), ACTUM_MIRRORED and ACTUM_PERSON_HEIGHT_M.
+    Each clip becomes a recording with one labelled segment and without images. The camera's settings come from the
+    environment variables ACTUM_POSE_MODEL, ACTUM_CALIBRATION (or ACTUM_FIELD_OF_VIEW_DEG), ACTUM_MIRRORED and
+    ACTUM_PERSON_HEIGHT_M.
     """
     with failing_on(ValueError):
         naming, settings = Naming.of(pattern, names), Settings(people=people)

@@ -56,7 +56,7 @@ def watch(
     """Print live messages until Ctrl-C, one message per line, with time, key, segment id and content.
 
     For the topic 'intent' (the objects that a hand reaches for), the command prints a line only when the likeliest
-    object changes, when the probability of this object first reaches 0.5 and 0.9, and when the reach ends. With --json,
+    object changes, when the probability of this object first reaches 0.5 or 0.9, and when the reach ends. With --json,
     the command prints every message.
 
     On a terminal, a line at the bottom also shows each person's ongoing action and its completeness. With --from, the
