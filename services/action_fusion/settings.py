@@ -82,34 +82,31 @@ class Settings(RememberingSettings):
     measure: Literal["joint", "proximity"] = Field(
         "joint",
         description=(
-            "how to choose the object of an action: joint considers how near each object is to the hands, whether a "
-            "hand reaches for the object, and whether the object moves with a hand; proximity chooses the object "
-            "nearest to a hand"
+            "how to choose the object of an action. joint: the object that a hand holds, moves or reaches for. "
+            "proximity: the object nearest to a hand"
         ),
     )
     reach_m: float = Field(
         0.25,
         gt=0,
         description=(
-            "an object is within reach of a hand if its marker is at most this many metres from the hand; if the hand "
-            "may hold a tool, --grasp-m is added to this distance"
+            "maximum distance from a hand at which an object is within reach (m). If the hand may hold a tool, the "
+            "maximum is this distance plus --grasp-m"
         ),
     )
     grasp_m: float = Field(
         0.20,
         gt=0,
         description=(
-            "an object can count as held only if its centre is at most this many metres from the centre of the hand"
+            "maximum distance between the centre of a hand and the centre of an object that the hand holds (m)"
         ),
     )
-    moved_m: float = Field(
-        0.03, gt=0, description="an object counts as moved if it is displaced by at least this many metres"
-    )
+    moved_m: float = Field(0.03, gt=0, description="minimum displacement at which an object counts as moved (m)")
     pointing_labels: frozenset[str] = Field(
         frozenset({"point"}),
         description=(
-            "actions in which the person points at the object, such as point,show. For these actions the object is the "
-            "one in the direction of the arm, however far away it is"
+            "labels of the actions in which a person points at an object, such as point,show. In these actions, the "
+            "direction of the arm determines the object, at any distance"
         ),
     )
     pointing_limit_deg: float = Field(
@@ -117,47 +114,48 @@ class Settings(RememberingSettings):
         gt=0,
         lt=180,
         description=(
-            "an object counts as pointed at only if the angle between the pointing arm and the direction to the object "
-            "is at most this many degrees"
+            "maximum angle between a pointing arm and the direction to the object (deg). If the angles to all objects "
+            "are larger, the event names no object"
         ),
     )
     uncertainty_m: float = Field(
         0.02,
         ge=0,
         description=(
-            "an event names several possible objects if the hand is almost equally near to all of them: their "
-            "distances to the hand differ by at most this many metres"
+            "if a hand reaches towards several objects whose distances from the hand differ by at most this value (m), "
+            "the event names all of these objects as possible"
         ),
     )
     pointing_uncertainty_deg: float = Field(
         2.0,
         ge=0,
         description=(
-            "an event also names an object as possible if its angle from the pointing arm is at most this many degrees "
-            "larger than that of the best object"
+            "if a person points towards several objects whose angles from the arm differ by at most this value (deg), "
+            "the event names all of these objects as possible"
         ),
     )
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
-            "the result that each action should have on its object, such as lift=lifted,push=pushed. In these actions, "
-            "a held object is never seen as a tool; in all other actions, it can be a tool used on another object"
+            "for each action, the result that is expected for the object, such as lift=lifted,push=pushed; events say "
+            "whether the expected result occurred. In all actions without an expected result, a held object may be a "
+            "tool that is used on another object"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(
         None,
         description=(
-            "transform from the coordinates of the camera to those of a room or robot: the 16 numbers of a 4 x 4 "
-            "matrix, row by row, lengths in metres, or a file with these numbers. For several sensors, write {sensor} "
-            "in place of the sensor's name in the name of the file, such as world-{sensor}.txt. Events then give "
-            "object poses in both coordinate systems. Default: events give object poses in camera coordinates only"
+            "transform from camera coordinates to the coordinates of a room or robot. With this transform, events give "
+            "object poses in both coordinate systems; default: in camera coordinates only. Write the 16 numbers of a 4 "
+            "x 4 matrix row by row (lengths in metres), or name a file that contains these numbers. For several "
+            "sensors, name one file per sensor and replace the sensor's name by {sensor}, such as world-{sensor}.txt"
         ),
     )
     world_frame: str = Field(
         "world",
         min_length=1,
         max_length=200,
-        description="name of the coordinate system to which --world-from-camera transforms, as it appears in events",
+        description="name that events use for the target coordinate system of --world-from-camera",
     )
 
     @model_validator(mode="after")

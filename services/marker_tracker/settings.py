@@ -26,8 +26,8 @@ class Settings(SharedSettings):
     scene: Path | None = Field(
         None,
         description=(
-            "a YAML file that describes the objects and their markers; replaces --dictionary, --marker-size-m and "
-            "--objects"
+            "a YAML file that describes the objects and their markers. With this file, --dictionary and "
+            "--marker-size-m are ignored, and --objects is not allowed"
         ),
     )
     dictionary: str = Field(
@@ -40,12 +40,15 @@ class Settings(SharedSettings):
         default_factory=dict,
         description=(
             'for each marker id, the name of the object that carries the marker, such as {"3": {"name": "cup"}}. If '
-            "the side length of a marker differs from --marker-size-m, add this length in metres: "
-            '{"3": {"name": "cup", "size_m": 0.05}}. Default: each marker is an object of its own'
+            'the side length of a marker differs from --marker-size-m, add the side length in metres: {"3": {"name": '
+            '"cup", "size_m": 0.05}}. Default: each marker is a separate object'
         ),
     )
     memory_s: float = Field(
-        1.0, gt=0, le=60, description="how long an object is still published after its marker was last seen (s)"
+        1.0,
+        gt=0,
+        le=60,
+        description="time for which an object is still published while its marker is not seen (s)",
     )
     calibrated_size_px: tuple[Pixels, Pixels] | None = Field(
         None,

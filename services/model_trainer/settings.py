@@ -20,14 +20,14 @@ class Settings(NodeSettings):
     model: Path | None = Field(
         None,
         description=(
-            "the model file that the classifier loads (.npz). Whenever a user puts a model into use, the trainer "
-            "overwrites this file with that model. Default: model.npz in --trainer-data"
+            "the model file that the classifier loads (.npz). Whenever a user chooses a model on the web page, the "
+            "trainer overwrites this file with the chosen model. Default: model.npz in --trainer-data"
         ),
     )
     original_model: Path | None = Field(
         None,
         description=(
-            "a model file to start with. The trainer copies this original to --model, and copies it again whenever the "
-            "original changes. The trainer never changes the original. Default: no such file"
+            "a model file to start with. The trainer copies this file to --model once, and again whenever this file "
+            "changes. The trainer never writes to this file. Default: no such file"
         ),
     )

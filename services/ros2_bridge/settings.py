@@ -38,29 +38,29 @@ class Settings(ServiceSettings):
     ros_namespace: str | None = Field(
         None,
         description=(
-            "ROS namespace of all topics except /tf, /tf_static and those of ROS4HRI; default: actum/ and the sensor's "
-            "name"
+            "ROS namespace of all topics except /tf, /tf_static and the topics of ROS4HRI. Default: actum/SENSOR, such "
+            "as actum/kinect0"
         ),
     )
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
         "jazzy",
         description=(
-            "the ROS 2 distribution of your nodes; it has to be right, because the topics of humble have other names "
-            "in Zenoh than those of jazzy and kilted"
+            "the ROS 2 distribution of your nodes. A wrong distribution can prevent all communication, because humble "
+            "names topics in Zenoh differently from jazzy and kilted"
         ),
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
         UNLESS_CHOSEN,
         description=(
-            "the topics to exchange with ROS 2, separated by commas, such as event,mark; default: all except the topic "
-            "'cropped', because its messages are images of people"
+            "the topics to exchange with ROS 2, separated by commas, such as event,mark. The topic 'cropped' is not in "
+            "the default, because its messages are images of people"
         ),
     )
     ros_hri_mapping: Path | None = Field(
         None,
         description=(
-            "a YAML file that says which actions ROS4HRI's topics of gestures and of intents name; default: no action "
-            "is a gesture or an intent"
+            "a YAML file that maps actions to the gestures and intents of ROS4HRI; default: no gestures and no intents "
+            "are published"
         ),
     )
     ros_frame_id: str | None = Field(
@@ -68,16 +68,16 @@ class Settings(ServiceSettings):
         min_length=1,
         description=(
             "name of the camera's optical frame, if your robot's tf tree already contains this frame; the bridge then "
-            "publishes nothing on /tf_static. Default: the bridge publishes SENSOR_link (such as kinect0_link) and, "
-            "below it, SENSOR_optical_frame on /tf_static"
+            "publishes nothing on /tf_static. Default: the bridge publishes on /tf_static the frame SENSOR_link, such "
+            "as kinect0_link, and its child frame SENSOR_optical_frame"
         ),
     )
 
     ros_bodies: bool = Field(
         False,
         description=(
-            "read the bodies that other ROS 2 nodes track (ROS4HRI: /humans/bodies, /tf) and publish them as this "
-            "sensor's skeletons, in place of a sensor gateway; requires --ros-frame-id"
+            "take this sensor's skeletons not from a sensor gateway, but from ROS 2 nodes that track bodies (ROS4HRI: "
+            "/humans/bodies, /tf); requires --ros-frame-id"
         ),
     )
 

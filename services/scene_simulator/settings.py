@@ -20,7 +20,8 @@ class Settings(ServiceSettings):
         0,
         ge=0,
         description=(
-            "number of the simulated person who acts; each person has another body height, tempo and preferred hand"
+            "number that selects the simulated person, 0 or higher. Each number stands for a person with a different "
+            "body height, tempo and preferred hand"
         ),
     )
     seed: int = Field(
@@ -40,30 +41,31 @@ class Settings(ServiceSettings):
     everyday: Choice = Field(
         "none",
         description=(
-            "background activities between the actions, such as scratching: none; familiar (only some kinds, to train "
-            "a model with); all (all kinds, to test a model with); only (all kinds, and no actions)"
+            "what the simulated person does. none: only actions. familiar: actions, and some kinds of background "
+            "activities, such as scratching, to train a model with. all: actions, and all kinds of background "
+            "activities, to test a model with. only: all kinds of background activities, but no actions"
         ),
     )
     minutes: float = Field(
         1.0,
         ge=0,
         description=(
-            "minimum length of the scene in minutes; the background activities of --everyday fill the time after the "
-            "last action. Ignored if --everyday is none"
+            "minimum length of the scene (min). If the actions end earlier, the background activities of --everyday "
+            "fill the remaining time. Ignored if --everyday is none"
         ),
     )
     pauses: Pauses = Field(
         "long",
         description=(
             "what the simulated person does between two actions. long: up to three background activities, and rests of "
-            "several seconds; short: at most one background activity, and short rests. Ignored if --everyday is none"
+            "several seconds. short: at most one background activity, and short rests. Ignored if --everyday is none"
         ),
     )
     driven: bool = Field(
         False,
         description=(
-            "let the simulated person stand still until the web page, or the command 'perform' sent over Zenoh, asks "
-            "for an action"
+            "let the simulated person act only on request, and stand still otherwise. Request actions on the web page "
+            "or with the Zenoh query 'perform'"
         ),
     )
     actors: int = Field(
@@ -71,6 +73,6 @@ class Settings(ServiceSettings):
         ge=1,
         le=MOST_PEOPLE,
         description=(
-            "number of simulated people who act side by side; with more than one person no images are published"
+            "number of simulated people who act side by side. With more than one person, no images are published"
         ),
     )

@@ -29,8 +29,9 @@ class Settings(ServiceSettings):
     source: SourceName | None = Field(
         None,
         description=(
-            "where skeletons and images come from: camera (webcam, URL or video file); marker-camera (a second camera "
-            "used only for markers, not for skeletons); realsense; openni2 (Kinect); recording (the files in --path)"
+            "where skeletons and images come from. camera: a webcam, URL or video file. marker-camera: a second camera "
+            "that is used only to find markers. realsense: a RealSense camera. openni2: a Kinect or other OpenNI 2 "
+            "camera. recording: the recording that --path names"
         ),
     )
     path: Path | None = Field(
@@ -42,13 +43,14 @@ class Settings(ServiceSettings):
     )
     loop: bool = Field(
         False,
-        description="play the recording or video file again and again, with a pause of 1 s before each repetition",
+        description="repeat the recording or video file endlessly, with a pause of 1 s before each repetition",
     )
     calibration: Path | None = Field(
         None,
         description=(
             "calibration file of the camera, as written by `actum calibrate`; required with --source marker-camera. "
-            "Default: the lens data that a depth camera reports; for a webcam, a lens computed from --field-of-view-deg"
+            "Default: for a depth camera, the lens data that the camera reports; for a webcam, a lens computed from "
+            "--field-of-view-deg"
         ),
     )
     up_in_camera: Direction | None = Field(
@@ -61,7 +63,7 @@ class Settings(ServiceSettings):
     camera: Annotated[str, BeforeValidator(_text)] = Field(
         "0",
         description=(
-            "the camera to open: a device number or path, a URL, or a video file; only for --source camera and "
+            "the camera to open: a device number, device path, URL or video file; only with --source camera or "
             "marker-camera"
         ),
     )
@@ -78,21 +80,21 @@ class Settings(ServiceSettings):
         gt=5,
         lt=170,
         description=(
-            "the camera's angle of view along the longer side of the image (deg); used only with --source camera or "
-            "openni2, and only if --calibration is not set"
+            "the camera's angle of view along the longer side of the image (deg). Used only without --calibration, and "
+            "only with --source camera or openni2"
         ),
     )
     mirrored: bool = Field(
         False,
         description=(
-            "set this if the camera delivers mirrored images, so that left and right are corrected; only with --source "
-            "camera or marker-camera"
+            "flip mirrored camera images, so that left and right are correct; only with --source camera or "
+            "marker-camera"
         ),
     )
     pose_model: Path = Field(
         default_factory=default_pose_model,
         description=(
-            "file of the model that finds people in images, as downloaded by `actum models fetch`; needed with "
+            "file of the model that finds people in images, as downloaded by `actum models fetch`; required with "
             "--source camera, realsense and openni2"
         ),
     )
@@ -101,14 +103,14 @@ class Settings(ServiceSettings):
         gt=0.5,
         lt=2.5,
         description=(
-            "body height of the person (m), which makes estimated distances from the camera more exact; default: an "
-            "average height is assumed"
+            "body height of the person (m). The height makes the estimated distance from the camera more exact. "
+            "Default: an average height"
         ),
     )
     images: bool = Field(
         True,
         description=(
-            "publish the camera's images; use --no-images if a second process with --source marker-camera publishes "
+            "publish the camera's images. Use --no-images if a second gateway, with --source marker-camera, publishes "
             "images for this sensor"
         ),
     )

@@ -43,23 +43,23 @@ class Settings(RememberingSettings):
     model: Path | None = Field(
         None,
         description=(
-            "the model file (.npz); it is loaded when it appears and whenever it changes. Without a model no action is "
-            "recognised"
+            "the model file (.npz). The classifier loads this file as soon as the file exists, and again whenever the "
+            "file changes. Without a model, no action is recognised"
         ),
     )
     publish_maps: bool = Field(
         False,
         description=(
-            "publish with each recognised action the activity of the model's self-organizing maps, which the web page "
-            "then draws"
+            "publish the activity of the model's self-organizing maps with each recognised action, so that the web "
+            "page can draw this activity"
         ),
     )
     segments: WantedSegments = Field(
         "both",
         description=(
-            "which actions to recognise: marks (only actions whose start and end are marked by another program), auto "
-            "(only actions that the classifier finds by itself), or both (if a marked action overlaps a found one, "
-            "only the marked action is published)"
+            "which actions to recognise. marks: only actions whose start and end another program marks. auto: only "
+            "actions that the classifier finds by itself. both: both kinds; if an action that is found overlaps a "
+            "marked action, only the marked action is published"
         ),
     )
     false_alarms_per_min: float | None = Field(
@@ -74,32 +74,32 @@ class Settings(RememberingSettings):
     shortest_pause_s: Seconds = Field(
         0.0,
         description=(
-            "an action that the classifier finds by itself is not published if it starts less than this many seconds "
-            "after the end of the previous action"
+            "shortest pause between two actions of one person (s). If the classifier finds an action that starts "
+            "sooner after the previous action, this action is not published. This option does not affect actions whose "
+            "start and end another program marks"
         ),
     )
     cooldown_s: Annotated[dict[str, Seconds], NoDecode, BeforeValidator(_pairs)] = Field(
         {},
         description=(
-            "the shortest pause after an action before the same action counts again, in seconds for each action. With "
-            "wave=3,clap=1, a wave that starts less than 3 s after the end of the last published wave is not "
-            "published. This does not affect actions whose start and end are marked by another program. Default: 0 for "
-            "all actions"
+            "for each action, the shortest pause between two repetitions by one person (s). With wave=3,clap=1, a wave "
+            "is not published if it starts less than 3 s after the end of the last published wave. This option does "
+            "not affect actions whose start and end another program marks. Default: 0 s for all actions"
         ),
     )
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "of the actions that the classifier finds by itself, publish only these, such as wave,clap. This does not "
-            "affect actions whose start and end are marked by another program. Default: all actions of the model are "
-            "published"
+            "actions, such as wave,clap: of the actions that the classifier finds by itself, publish only these. This "
+            "option does not affect actions whose start and end another program marks. Default: all actions of the "
+            "model are published"
         ),
     )
     disabled_actions: Names = Field(
         frozenset(),
         description=(
-            "do not publish these actions, such as wave,clap, if the classifier finds them by itself. This does not "
-            "affect actions whose start and end are marked by another program. Default: no action is disabled"
+            "actions, such as wave,clap, that are not published if the classifier finds them by itself. This option "
+            "does not affect actions whose start and end another program marks. Default: all actions are published"
         ),
     )
 

@@ -31,8 +31,8 @@ class Settings(ServiceSettings):
     page_host: str = Field(
         "127.0.0.1",
         description=(
-            "address on which the web page listens. With 127.0.0.1 only this machine can open the page; with 0.0.0.0 "
-            "other machines can open it too, and --page-token is required"
+            "address on which the web page listens. With 127.0.0.1, only this machine can open the page. With 0.0.0.0, "
+            "other machines can also open the page, and --page-token is required"
         ),
     )
     page_port: int | None = Field(
@@ -53,15 +53,16 @@ class Settings(ServiceSettings):
     page_guarded: bool = Field(
         False,
         description=(
-            "allow other machines to open the web page even though no --page-token is set. Use this only if something "
-            "else restricts access: for example, in a container, if the host publishes the port on 127.0.0.1 only"
+            "allow other machines to open the web page without --page-token. Use this option only if something else "
+            "restricts access, such as a container host that publishes the port on 127.0.0.1 only"
         ),
     )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(),
         description=(
-            "host names by which browsers may open the page, in addition to this machine's own name and addresses, "
-            "such as lab.example.org; requests for other host names are refused. Default: no further names"
+            "further host names under which browsers may open the web page, such as lab.example.org. This machine's "
+            "own name and addresses are always allowed; requests for any other name are refused. Default: no further "
+            "names"
         ),
     )
 

@@ -120,43 +120,42 @@ class ServiceSettings(BaseSettings):
         "kinect0",
         pattern=NAME,
         description=(
-            "name of the sensor, such as kinect0; programs receive each other's messages only if they were started "
-            "with the same name"
+            "name of the sensor, such as kinect0; programs exchange messages only if they have the same sensor name"
         ),
     )
     instance: str = Field(
         default_factory=default_instance,
         pattern=NAME,
         description=(
-            "name of this process, different from that of every other process of the same service; if not set, it is "
-            "made from the host name and the process id"
+            "name of this process. Processes of the same service need different names; the generated default contains "
+            "the host name and the process id"
         ),
     )
     take_over: bool = Field(
         False,
         description=(
-            "if an instance of this service already runs for this sensor, stop that instance and take its place"
+            "if another process of this service already serves this sensor, stop that process and take its place"
         ),
     )
     zenoh_config: Path | None = Field(
         None,
         description=(
-            "a Zenoh configuration file (JSON5), for example with settings for TLS and user names; actum's own "
-            "settings, such as --connect, take precedence over this file"
+            "a Zenoh configuration file (JSON5), for example with settings for TLS and user names. Settings of actum, "
+            "such as --connect, take precedence over this file"
         ),
     )
     credentials: Path | None = Field(
         None,
         description=(
-            "the folder with this program's certificate and key. `actum deploy` writes one folder for each role: a "
-            "program that only watches uses people/viewer. Needs --connect tls/host:port"
+            "the folder with this program's certificate and key, as written by `actum deploy`, such as people/viewer "
+            "for a program that only reads messages. Requires --connect tls/HOST:PORT. Default: no certificate"
         ),
     )
     health_file: Path | None = Field(
         None,
         description=(
-            "a file whose modification time the service renews every second while it works, so that the health check "
-            "of a container can test the file; default: no file"
+            "a file for the health check of a container: while the service works, the service updates the file's "
+            "modification time every second. Default: no file"
         ),
     )
 
@@ -199,8 +198,8 @@ class NodeSettings(ServiceSettings):
         "kinect0",
         pattern=NAMES,
         description=(
-            "name of the sensor, such as kinect0; programs receive each other's messages only if they were started "
-            "with the same name. Several names, such as left,right, mean several sensors at once"
+            "name of the sensor, such as kinect0; programs exchange messages only if they have the same sensor name. "
+            "For several sensors, list their names, such as left,right"
         ),
     )
 
@@ -211,8 +210,8 @@ class SharedSettings(NodeSettings):
     share: bool = Field(
         False,
         description=(
-            "share the sensors with all other processes of this service that have this flag: one process at a time "
-            "serves a sensor. If this process ends, another one takes over within 2 s"
+            "let several processes of this service share the sensors; start each of the processes with --share. Each "
+            "sensor is served by one process at a time. If that process ends, another process takes over within 2 s"
         ),
     )
 
@@ -223,8 +222,8 @@ class RememberingSettings(SharedSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the service stores the last answers that it published, to publish them again after a "
-            "restart. Processes with --share do not use the folder, but listen to each other's answers. Default: no "
-            "folder, so nothing is stored"
+            "a folder in which the service stores its latest answers, so that a restarted service publishes the same "
+            "answers again. With --share the folder is not used, because the processes receive each other's answers. "
+            "Default: nothing is stored"
         ),
     )

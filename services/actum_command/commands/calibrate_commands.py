@@ -29,8 +29,8 @@ from actum_command.live_calibration import SilentStreamError, collect_pairs, col
 app = PlainTyper(
     no_args_is_help=True,
     help=(
-        "Measure a camera's lens, position and tilt. Lens and position are measured with the board that 'actum markers "
-        "--board' prints, the tilt with a person who stands in front of the camera."
+        "Measure a camera's lens, position and tilt. To measure the lens or the position, use the board that 'actum "
+        "markers --board' prints. To measure the tilt, let a person stand in front of the camera."
     ),
 )
 app.command("up")(with_router_flags(up))
@@ -67,20 +67,18 @@ def intrinsics(
     ] = None,
     live: Annotated[
         bool,
-        typer.Option(
-            "--live", help="take the pictures from the images that the running camera publishes, in place of files"
-        ),
+        typer.Option("--live", help="take the pictures from the running camera instead of from files"),
     ] = False,
     board: Squares = "7x5",
     square_mm: SquareMm = 35.0,
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Find a camera's focal lengths, centre and distortion from 15 to 20 pictures of the calibration board.
+    """Measure a camera's focal lengths, centre and distortion from 15 to 20 pictures of the calibration board.
 
-    Print the board with 'actum markers --board'. Do this once per camera, for exact positions of people and objects.
-    The command writes a calibration file, which the sensor gateway reads with --calibration. To the same folder, the
-    command writes a picture that shows in which parts of the image the board was seen.
+    Print the board with 'actum markers --board'. Calibrate each camera once, so that positions of people and objects
+    are exact. The command writes a calibration file for the option --calibration of the sensor gateway. Beside this
+    file, the command writes a picture that shows in which parts of the image the board was seen.
     """
     if live == bool(images):
         fail("give either pictures of the board, or --live to take the pictures now")
@@ -108,10 +106,10 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         list[Path] | None,
         typer.Argument(
             help=(
-                "pairs of pictures of the calibration board, both taken at the same time: NAME_a.png by the camera "
-                "that sees the markers and NAME_b.png by the camera that sees the people. Or two folders: first the "
-                "pictures of the camera that sees the markers, then those of the camera that sees the people, with the "
-                "same file name for both pictures of a pair"
+                "pictures of the calibration board, in pairs that both cameras took at the same time. In each pair, "
+                "NAME_a.png is from the camera that sees the markers, and NAME_b.png is from the camera that sees the "
+                "people. Or name two folders, first the folder of the camera that sees the markers; the two pictures "
+                "of a pair then have the same file name"
             )
         ),
     ] = None,
@@ -119,8 +117,8 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "take the pictures from two running cameras, in place of files: name first the sensor of the camera "
-                "that sees the markers, then the sensor of the camera that sees the people, such as kinect1,kinect0"
+                "take the pictures from two running cameras instead of from files. Name the sensors of both cameras, "
+                "such as kinect1,kinect0: first the camera that sees the markers, then the camera that sees the people"
             )
         ),
     ] = None,
@@ -129,11 +127,11 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     marker_mm: MarkerMm = 26.0,
     family: Family = "DICT_5X5_100",
 ) -> None:
-    """Measure where one camera, which sees the markers, stands relative to another camera, which sees the people.
+    """Measure the position of a camera that sees the markers, relative to a second camera that sees the people.
 
-    Use this command only if you have two such cameras, after 'actum calibrate intrinsics' for both. The command needs
-    6 to 10 pairs of pictures of the board that 'actum markers --board' prints. It writes a calibration file for the
-    camera that sees the markers.
+    Use this command only if you have two such cameras. First run 'actum calibrate intrinsics' for each camera. Then
+    take 6 to 10 pairs of pictures of the board that 'actum markers --board' prints. The command writes a calibration
+    file for the camera that sees the markers.
     """
     if (live is not None) == bool(pairs):
         fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect1,kinect0")

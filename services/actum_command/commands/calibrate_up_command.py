@@ -25,15 +25,16 @@ def up(
             exists=True,
             dir_okay=False,
             help=(
-                "a recording of a person who stands upright and still; default: the person whom the running camera sees"
+                "a recording of a person who stands upright and still. Default: measure with the person whom the "
+                "running camera sees"
             ),
         ),
     ] = None,
 ) -> None:
-    """Measure the tilt of a camera; a person has to stand upright and still in front of the camera for two seconds.
+    """Measure the tilt of a camera with the help of a person.
 
-    The person has to let the arms hang down. The command prints the value for the environment variable
-    ACTUM_UP_IN_CAMERA of the sensor gateway.
+    The person has to stand upright and still in front of the camera for two seconds, with hanging arms. The command
+    prints the environment variable ACTUM_UP_IN_CAMERA with its value; set this variable for the sensor gateway.
     """
     frames = _live() if recording is None else _recorded(recording)
     estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS

@@ -33,8 +33,8 @@ def demo(
         typer.Option(
             min=0,
             help=(
-                "number of simulated people to test on, all of them new to the model. With 0, the test uses one person "
-                "on whom the model was trained"
+                "number of simulated people to test on; the model was trained on other people. With 0, the test uses "
+                "one person on whom the model was trained"
             ),
         ),
     ] = SHOWN,
@@ -50,12 +50,12 @@ def demo(
         ),
     ] = False,
 ) -> None:
-    """Test recognition on simulated people who are new to the model, and print the scores beside published ones.
+    """Test recognition on simulated people on whom the model was not trained, and print the scores.
 
-    The published scores are those of the paper that actum implements (Gharaee et al. 2017). The test needs no camera
-    and no other running program. Between the actions the people do other things, such as scratching, and nobody marks
-    where an action starts or ends. The test takes 45 s per person. With --people 9, each action is tested 9 times, as
-    in the paper.
+    Beside the scores, the command prints the published scores of the paper that actum implements (Gharaee et al. 2017).
+    The test needs no camera and no other running program. Between the actions, the people do other things, such as
+    scratching, and nobody marks where an action starts or ends. The test takes 45 s per person. With --people 9, each
+    action is tested 9 times, as in the paper.
     """
     here = settings()
     try:

@@ -26,8 +26,10 @@ DirArgument = Annotated[
     Path,
     typer.Argument(
         metavar="DIR",
-        help="the folder of the deployment, in which 'actum deploy init' writes the files of all hosts; it contains "
-        "private keys, so let nobody else read it",
+        help=(
+            "the folder to which 'actum deploy init' writes the files of all hosts. This folder contains private keys, "
+            "so let nobody else read it"
+        ),
     ),
 ]
 YEAR = 365
@@ -47,10 +49,9 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
             metavar="NAME=ADDRESS,…",
             help=(
                 "names and addresses of the hosts, such as camera=192.168.1.5,compute=192.168.1.6. A host whose name "
-                "begins with camera runs a camera and the marker tracker. A host whose name begins with compute runs a "
-                "web page for each of its sensors, and one of each other service for all its sensors. Name further "
-                "hosts camera2, compute2. If the router of a host uses another port than 7447, append :PORT to "
-                "the address"
+                "begins with camera runs a camera and the marker tracker. A host whose name begins with compute runs "
+                "all other services and, for each of its sensors, a web page. Name further hosts camera2, compute2 and "
+                "so on. If the router of a host uses another port than 7447, append :PORT to the host's address"
             ),
         ),
     ],
@@ -82,19 +83,21 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--images",
             help=(
-                "also send camera images to other hosts; with --open they are always sent. Default: images stay on the "
-                "camera's host"
+                "also send camera images to other hosts. With --open, images are always sent. Default: images stay on "
+                "the camera's host"
             ),
         ),
     ] = False,
-    simulate: Annotated[bool, typer.Option("--simulate", help="run the simulated scene in place of cameras")] = False,
+    simulate: Annotated[bool, typer.Option("--simulate", help="run the simulated scene instead of cameras")] = False,
     ros2: Annotated[
         int | None,
         typer.Option(
             metavar="DOMAIN",
             min=0,
             max=232,
-            help="add the bridge to ROS 2, for ROS 2 nodes with this ROS_DOMAIN_ID (usually 0); default: no bridge",
+            help=(
+                "also run the bridge to ROS 2, for ROS 2 nodes with this ROS_DOMAIN_ID (usually 0); default: no bridge"
+            ),
         ),
     ] = None,
     ros_bodies: Annotated[
@@ -102,9 +105,9 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             metavar="FRAME",
             help=(
-                "take the sensor's skeletons from ROS 2 nodes that track bodies, and let the gateway publish none; "
-                "FRAME is the optical frame of the camera that sees the bodies. Needs --ros2 and a single sensor. "
-                "Default: the gateway of each camera host publishes skeletons"
+                "take skeletons not from the sensor gateway, but from ROS 2 nodes that track bodies. FRAME is the "
+                "optical frame of the camera that sees the bodies. Requires --ros2 and a single camera host. Default: "
+                "the sensor gateway of each camera host publishes skeletons"
             ),
         ),
     ] = None,
@@ -117,9 +120,9 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Write a folder of files for each host, and a folder of credentials for each role that a user can have.
 
-    Copy each host's folder to that host and follow its README.md there. The folders of credentials are in people/, such
-    as people/viewer for users who only watch: copy the folder of a user's role to that user's machine. To change the
-    deployment, run the command again with other options.
+    Copy each host's folder to the host, and follow the README.md in the folder. Copy the credentials of a user's role
+    to the user's machine: the folder people/viewer, for example, is for users who only watch. To change the deployment,
+    run the command again with other options.
     """
     if not_secured and passwords:
         fail("--open and --passwords exclude each other: leave out one of them")
@@ -165,18 +168,18 @@ def rotate(
         typer.Option(
             metavar="NAME",
             help=(
-                "name of a credentials folder, such as viewer, whose old certificate the routers must refuse; may be "
-                "repeated. Default: no certificate is refused"
+                "name of a folder of credentials that were lost or stolen, such as viewer. The routers will refuse the "
+                "old certificate of this folder. May be repeated. Default: no certificate is refused"
             ),
         ),
     ] = None,
 ) -> None:
     """Renew all certificates and keys, before they expire or after some were lost.
 
-    If credentials were lost or stolen, name their folder with --revoke, so that the routers refuse the old ones.
-    Afterwards copy the folder credentials/ of each host, and the folders in people/, to their machines again. Services
-    read the new certificates without a restart. With --revoke, also copy router.json5 to each host; then restart each
-    router that runs in a container.
+    If credentials were lost or stolen, name their folder with --revoke, so that the routers refuse the old
+    certificates. Afterwards, copy the folder credentials/ of each host to the host again, and the folders in people/ to
+    the users' machines. Services read the new certificates without a restart. With --revoke, also copy router.json5 to
+    each host; then restart each router that runs in a container.
     """
     with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment

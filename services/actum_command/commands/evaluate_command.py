@@ -48,10 +48,11 @@ from som_classifier.settings import Settings
 
 CLASSIFIER = "som_classifier"
 """The service that has the settings of the search."""
-ONLY_LEFT_OUT = "used only with --leave-one-person-out: "
+ONLY_LEFT_OUT = ". Used only with --leave-one-person-out"
 INTENT_HELP = (
-    "test without a model file how early and how correctly the contacts of hands with objects are foreseen. A contact "
-    "is the first motion of an object in a labelled action; the recordings must contain the objects"
+    "test, without a model file, how early and how correctly actum predicts which object a hand will touch. The "
+    "recordings must contain tracked objects; an object counts as touched when the object first moves in a labelled "
+    "action"
 )
 OF_MODELS = {
     "continuous": "--continuous",
@@ -72,8 +73,8 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         list[Path],
         typer.Argument(
             help=(
-                "the model file to test (none with --leave-one-person-out or --intent), then labelled recordings or "
-                "folders of recordings"
+                "the model file to test, then labelled recordings or folders of recordings. With "
+                "--leave-one-person-out or --intent, name only recordings or folders"
             )
         ),
     ],
@@ -86,8 +87,8 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--leave-one-person-out",
             help=(
-                "test without a model file: for each person in turn, train a model on all other people and test it on "
-                "this person"
+                "test without a model file: for each person in turn, train a model on all other people, and test this "
+                "model on the person"
             ),
         ),
     ] = False,
@@ -102,17 +103,17 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         ),
     ] = False,
     intent: Annotated[bool, typer.Option("--intent", help=INTENT_HELP)] = False,
-    preset: Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=ONLY_LEFT_OUT + PRESET_HELP)] = DEFAULT.name,
+    preset: Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HELP + ONLY_LEFT_OUT)] = DEFAULT.name,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=ONLY_LEFT_OUT + SET_HELP)
+        list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP + ONLY_LEFT_OUT)
     ] = None,
-    seed: Annotated[int, typer.Option(min=0, help=ONLY_LEFT_OUT + SEED_HELP)] = 0,
+    seed: Annotated[int, typer.Option(min=0, help=SEED_HELP + ONLY_LEFT_OUT)] = 0,
     with_excluded: AllOption = False,
-    jobs: Annotated[int | None, typer.Option(min=1, help=ONLY_LEFT_OUT + JOBS_HELP)] = None,
+    jobs: Annotated[int | None, typer.Option(min=1, help=JOBS_HELP + ONLY_LEFT_OUT)] = None,
 ) -> None:
     """Test how well actions are recognised in labelled recordings, and print the scores.
 
-    Name a model file to test that model, or use --leave-one-person-out to learn how well a model works with new people.
+    To test one model, name its file. To learn how well a model would work with new people, use --leave-one-person-out.
     """
     if json_file is not None:
         refuse_place(json_file, ".json")

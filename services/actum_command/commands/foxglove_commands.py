@@ -25,8 +25,8 @@ def foxglove(
         str,
         typer.Option(
             help=(
-                "address to listen on. With 127.0.0.1 only this machine can connect; with any other address everybody "
-                "on your network can watch"
+                "address to listen on. With 127.0.0.1, only this machine can connect. With any other address, "
+                "everybody on your network can watch"
             )
         ),
     ] = ("127.0.0.1"),
@@ -42,14 +42,14 @@ def foxglove(
     ] = None,
     speed: Annotated[
         float,
-        typer.Option(min=0.01, help="playback speed if a recording is shown; 1 is real time, 2 is twice as fast"),
+        typer.Option(min=0.01, help="playback speed of a recording; 1 is real time, 2 is twice as fast"),
     ] = 1.0,
 ) -> None:
     """Serve live streams or a recording to the Foxglove viewer, with people, objects, images and events, until Ctrl-C.
 
-    Foxglove's desktop program can connect without further options. A website can connect only if --origin names it; the
-    command prints the websites that it refuses. A recording starts to play when a viewer connects. To move back and
-    forth in a recording, convert the recording with 'actum export' instead.
+    Foxglove's desktop program can connect without further options. A website can connect only if --origin names the
+    website; the command prints each website that it refuses. A recording starts to play when a viewer connects. To move
+    back and forth in a recording, convert the recording with 'actum export' instead.
     """
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     from actum_command.viewers.foxglove_sinks import ServerError, served

@@ -37,7 +37,7 @@ Out = Annotated[Path, typer.Argument(help="the folder to which the recordings ar
 
 @app.command("msr-action3d")
 def msr_action3d(source: Source, out: Out) -> None:
-    """Import the data set MSR Action3D; each sequence becomes a recording of one labelled action."""
+    """Import the data set MSR Action3D; each sequence becomes a recording with one labelled action."""
     _run(import_msr_action3d, source, out)
 
 
@@ -56,8 +56,8 @@ def msrc12(
         typer.Option(
             "--trimmed",
             help=(
-                "let each segment start and end where the movement visibly starts and ends; default: a segment extends "
-                "up to 1.5 s before and after the point in time that the data set gives for the gesture"
+                "start and end each segment where the movement visibly starts and ends. Default: a segment extends up "
+                "to 1.5 s before and after the point in time that the data set gives for the gesture"
             ),
         ),
     ] = False,
@@ -66,8 +66,8 @@ def msrc12(
         typer.Option(
             "--composed",
             help=(
-                "combine the gestures of each person into two new recordings, in which all gestures come in mixed "
-                "order; segments start and end as with --trimmed. Default: one recording per sequence of the data set"
+                "write two recordings per person, in which the person does all gestures in mixed order; segments start "
+                "and end as with --trimmed. Default: one recording per sequence of the data set"
             ),
         ),
     ] = False,
@@ -86,24 +86,22 @@ def msrc12(
 def bimacs(source: Source, out: Out) -> None:
     """Import OptiTrack motion capture of two hands and objects, labelled as in the KIT Bimanual Actions Dataset.
 
-    The folder contains files such as subject0_take0.csv. Each file becomes a recording with labelled segments of each
-    hand.
+    The folder SOURCE contains files such as subject0_take0.csv. Each file becomes a recording with labelled segments of
+    each hand.
     """
     _run(import_bimacs, source, out)
 
 
 @app.command("video")
 def video(
-    source: Annotated[
-        Path, typer.Argument(help="a folder of video clips, each of which shows one action", exists=True)
-    ],
+    source: Annotated[Path, typer.Argument(help="a folder of video clips; each clip shows one action", exists=True)],
     out: Out,
     pattern: Annotated[
         str,
         typer.Option(
             help=(
-                "regular expression that matches the file names without their ending; its named groups 'action' and "
-                "'person' are the label and the person of the recording"
+                "regular expression for the file names without extension. The named group 'action' matches the label "
+                "of the recording; the optional named group 'person' matches the person"
             )
         ),
     ] = DEFAULT_PATTERN,
@@ -111,8 +109,8 @@ def video(
         str,
         typer.Option(
             help=(
-                "labels for the actions in the file names, such as 1=wave,2=drink if the file names contain numbers; "
-                "default: the label is the action as written in the file name"
+                "labels for the actions in the file names, such as 1=wave,2=drink if the file names contain numbers "
+                "instead of labels. Default: the label is the action as written in the file name"
             )
         ),
     ] = "",
@@ -120,8 +118,9 @@ def video(
 ) -> None:
     """Import video clips that show one action each and are named after action and person, such as wave_anna_2.mp4.
 
-    Each clip becomes a recording with one labelled segment and without images. The camera's settings are read from the
-    environment: ACTUM_POSE_MODEL, ACTUM_FIELD_OF_VIEW_DEG or ACTUM_CALIBRATION, ACTUM_MIRRORED, ACTUM_PERSON_HEIGHT_M.
+    Each clip becomes a recording with one labelled segment and without images. The camera's settings come from the
+    environment variables ACTUM_POSE_MODEL, ACTUM_CALIBRATION (or ACTUM_FIELD_OF_VIEW_DEG), ACTUM_MIRRORED and
+    ACTUM_PERSON_HEIGHT_M.
     """
     with failing_on(ValueError):
         naming, settings = Naming.of(pattern, names), Settings(people=people)

@@ -36,7 +36,10 @@ def inspect(
         typer.Option(
             "-o",
             "--output",
-            help="the folder for the pictures and index.html; pictures of an earlier run in this folder are removed",
+            help=(
+                "the folder to which the pictures and index.html are written. The command deletes the pictures of an "
+                "earlier run from this folder"
+            ),
         ),
     ],
     files: Annotated[
@@ -44,8 +47,8 @@ def inspect(
         typer.Argument(
             metavar="[REC]...",
             help=(
-                "recordings, or folders of recordings; the command also draws how the model recognises the actions in "
-                "them. Default: only the model is drawn"
+                "recordings, or folders of recordings: also draw how the model recognises the actions in these "
+                "recordings. Default: draw only the model"
             ),
         ),
     ] = None,
@@ -55,7 +58,7 @@ def inspect(
     ] = "png",
     with_excluded: AllOption = False,
 ) -> None:
-    """Draw what a model has learnt and, if recordings are given, how the model recognises the actions in them.
+    """Draw what a model has learnt and, if you name recordings, how the model recognises the actions in the recordings.
 
     The command writes pictures, and a page that shows all pictures (index.html).
     """

@@ -30,8 +30,8 @@ app = PlainTyper(
     cls=ListingGroup,
     no_args_is_help=True,
     help=(
-        "List, add and correct the segments of recordings; a segment is one action with its start and end. 'actum "
-        "label REC…' lists the segments. Times are seconds from the beginning of the recording."
+        "List, add and correct the segments of recordings; a segment is one action with its start and end. To list the "
+        "segments, run 'actum label REC…'. All times are seconds from the beginning of the recording."
     ),
 )
 
@@ -39,9 +39,7 @@ SegmentName = Annotated[
     str,
     typer.Argument(
         metavar="SEGMENT",
-        help=(
-            "the segment: its number in the first column of the list that 'actum label REC' prints, or its segment id"
-        ),
+        help="number or id of the segment; 'actum label REC' prints the number of each segment in the first column",
     ),
 ]
 Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action, such as wave")]
@@ -55,11 +53,11 @@ def list_command(
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """List the marked segments of recordings, and whether training can use each of them.
+    """List the marked segments of recordings, and whether training can use each segment.
 
-    A segment is one action with its start and end. Columns: number, start, end, duration, segment id, label, who marked
-    the segment, who acts, usable for training, recorded answer of the classifier and, if the recording has several
-    sensors, the sensor.
+    A segment is one action with its start and end. Each line shows the number, start, end, duration, id and label of a
+    segment; then the origin of the marks, the person who acts, whether training can use the segment, and the
+    classifier's answer in the recording. If the recording has several sensors, the last column names the sensor.
     """
     recordings, all_lines = chosen(files, person, with_excluded), []
     with failing_on(RecordingError):
@@ -82,7 +80,7 @@ def move(
         typer.Option(
             help=(
                 "new start in seconds from the beginning of the recording, such as 12.3; or a shift in seconds: +0.2 "
-                "moves the start later, -0.1 earlier. Default: the start is not changed"
+                "moves the start 0.2 s later, -0.1 moves the start 0.1 s earlier. Default: the start is not changed"
             )
         ),
     ] = None,
@@ -91,12 +89,12 @@ def move(
         typer.Option(
             help=(
                 "new end in seconds from the beginning of the recording, such as 14.1; or a shift in seconds: +0.2 "
-                "moves the end later, -0.1 earlier. Default: the end is not changed"
+                "moves the end 0.2 s later, -0.1 moves the end 0.1 s earlier. Default: the end is not changed"
             )
         ),
     ] = None,
 ) -> None:
-    """Move the start or the end of a segment; the answers of the classifier in the recording are not changed."""
+    """Move the start or the end of a segment; the classifier's answers in the recording are not changed."""
     take, segment = _found(file, name)
     start_ns = _moved_to(start, segment.start_ns, take.first_ns)
     end_ns = _moved_to(end, segment.end_ns, take.first_ns)
@@ -108,9 +106,10 @@ def move(
 
 @app.command("delete")
 def delete(file: RecordingFile, name: SegmentName) -> None:
-    """Delete a segment: its start and end marks, the classifier's answers to it, and the person's frames during it.
+    """Delete a segment with its start mark, its end mark and the classifier's answers.
 
-    These frames stay if the segment has no label, or if another labelled segment of the same person contains them.
+    If the segment has a label, the command also deletes the frames that show the person during the segment. Frames that
+    belong to another labelled segment of the same person are kept.
     """
     take, segment = _found(file, name)
     with _editing(file):
@@ -167,8 +166,8 @@ def cut(
 ) -> None:
     """Search a recording again for the repetitions of one action, and label each repetition.
 
-    Use this command if 'actum record --times' miscounted. The repetitions that were found before are replaced; segments
-    that were marked or moved by hand stay.
+    Use this command if 'actum record --times' miscounted. The command replaces the repetitions that were found before.
+    Segments that were marked or moved by hand stay unchanged.
     """
     take = _opened(file)
     _refuse_length(label)
@@ -189,8 +188,9 @@ def picture(
         Path | None,
         typer.Option(
             help=(
-                "a model file: draw which action this model recognises in each labelled segment, and which actions it "
-                "finds without using the labels. Default: draw the actions that were recognised during the recording"
+                "a model file: draw which action this model recognises in each labelled segment, and which actions "
+                "this model finds without the labels. Default: draw the actions that were recognised during the "
+                "recording"
             )
         ),
     ] = None,

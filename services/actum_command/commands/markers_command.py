@@ -27,7 +27,7 @@ def markers(
     ] = 80.0,
     paper: Annotated[SheetSize, typer.Option(help="paper size of the sheets")] = SheetSize.A4,
     board: Annotated[
-        bool, typer.Option("--board", help="print the board that 'actum calibrate' needs, in place of markers")
+        bool, typer.Option("--board", help="print the board that 'actum calibrate' needs, instead of markers")
     ] = False,
 ) -> None:
     """Write a PDF to print: markers to put on objects or, with --board, the board for calibrating cameras.

@@ -24,7 +24,7 @@ def play(
     person: PersonOption = None,
     with_excluded: AllOption = False,
 ) -> None:
-    """Play recordings as if they were a live sensor: publish frames and the start and end of actions, but no labels."""
+    """Play recordings like a live sensor: publish the frames and the start and end marks of actions, but no labels."""
     recordings = chosen(files, person, with_excluded)
     stop = stop_on_signals()
     with connect() as client:

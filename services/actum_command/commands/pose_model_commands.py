@@ -48,7 +48,7 @@ POSE_MODEL = Published(
 
 app = PlainTyper(
     no_args_is_help=True,
-    help="Download the model that finds people in camera images. Do this before you use a camera.",
+    help="Download the model that finds people in camera images. Download this model before you use a camera.",
 )
 
 
@@ -64,22 +64,22 @@ def fetch_command(
         typer.Option(
             "-o",
             "--output",
-            help="the file to write (.task); default: the file from which the sensor gateway reads the model",
+            help="the file to write (.task). Default: the file from which the sensor gateway reads the model",
         ),
     ] = None,
     url: Annotated[
         str,
         typer.Option(
             help=(
-                "address to download from, such as that of a mirror; the checksum of the file is compared with that of "
-                "the original"
+                "address from which to download the file, such as the address of a mirror; default: the original "
+                "address. The command checks that the downloaded file has the checksum of the original file"
             )
         ),
     ] = POSE_MODEL.url,
 ) -> None:
-    """Download MediaPipe's pose model (9 MB, Apache-2.0) and check that the file is the expected one.
+    """Download MediaPipe's pose model (9 MB, Apache-2.0), and check that the file is complete and unchanged.
 
-    Do this once, before you use a camera.
+    Download the model once, before you use a camera.
     """
     if output is not None:
         refuse_ending(output, ".task")

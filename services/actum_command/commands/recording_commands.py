@@ -34,14 +34,16 @@ ALL = "all"
 def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     output: Annotated[
         Path,
-        typer.Argument(help="the recording to write (.mcap); with --events, the folder for the files with the events"),
+        typer.Argument(
+            help=("the recording to write (.mcap); with --events, the folder to which the history is written")
+        ),
     ],
     person: Annotated[
         str,
         typer.Option(
             help=(
-                "name or number of the person who acts; stored in the recording, so that a model can be tested on "
-                "people on whom it was not trained"
+                "name or number of the person who acts, stored in the recording. With these names, a model can be "
+                "tested on people on whom the model was not trained"
             )
         ),
     ] = "",
@@ -49,8 +51,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "label of every action whose start and end are marked during the recording, such as wave; default: the "
-                "label that the mark itself contains"
+                "label, such as wave, for every action whose start and end are marked during the recording. Default: "
+                "the label in the start mark"
             )
         ),
     ] = None,
@@ -59,8 +61,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             min=1,
             help=(
-                "number of times that the person is going to do the action --label. The recording stops after the last "
-                "time; each repetition is found and labelled automatically"
+                "number of times that the person will do the action that --label names. The command finds and labels "
+                "each repetition, and stops after the last repetition"
             ),
         ),
     ] = None,
@@ -68,13 +70,14 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "whose start and end marks to store: manual (people and other programs), simulator (the simulated "
-                "scene), replay ('actum play') and auto (the classifier), separated by commas, or all. Default: "
-                "manual, but none with --times, which makes its own marks"
+                "which start and end marks to store, by their origin: one or more of manual (people and other "
+                "programs), simulator (the simulated scene), replay ('actum play') and auto (the classifier), "
+                "separated by commas; or all. Default: manual. With --times, the default is to store only the marks "
+                "that --times makes"
             )
         ),
     ] = None,
-    images: Annotated[bool, typer.Option(help="also store images; they show faces, which are personal data")] = False,
+    images: Annotated[bool, typer.Option(help="also store images. Images show faces, which are personal data")] = False,
     seconds: Annotated[
         float | None, typer.Option(min=0, help="length of the recording (s); default: until Ctrl-C")
     ] = None,
@@ -83,8 +86,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--finish",
             help=(
-                "record nothing; turn the unfinished file OUTPUT.part into the recording OUTPUT. Such a file is left "
-                "if the process was killed or the disk was full"
+                "record nothing, but turn the unfinished file OUTPUT.part into the recording OUTPUT. The file "
+                "OUTPUT.part remains if 'actum record' was killed or the disk was full"
             ),
         ),
     ] = False,
@@ -93,8 +96,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--events",
             help=(
-                "run as a service that keeps a history in files in the folder OUTPUT. The history holds the "
-                "events, the start and end marks, and the classifier's final answers"
+                "run as a service that stores a history in the folder OUTPUT. The history contains events, start and "
+                "end marks, and the classifier's final answers"
             ),
         ),
     ] = False,
@@ -103,13 +106,13 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Record a sensor's streams, and the start and end marks of actions, to a file for training or for playing again.
 
-    With --label and --times, the recording is labelled automatically:
-
-    actum record wave.mcap --label wave --times 5
-
     No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.
 
-    With --events, the command runs as a service that keeps a history of recognised actions in the folder OUTPUT.
+    With --events, the command runs as a service that stores a history of recognised actions in the folder OUTPUT.
+
+    With --label and --times, the command labels the recording automatically. Example:
+
+    actum record wave.mcap --label wave --times 5
     """
     if events:
         keep_events(output, arguments_of(HISTORY, given))

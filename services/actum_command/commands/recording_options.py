@@ -16,8 +16,8 @@ PersonOption = Annotated[
     str | None,
     typer.Option(
         help=(
-            "use only recordings of these people, named as in 'actum record --person', such as 1,3,5; default: "
-            "recordings of everybody"
+            "use only recordings of these people, such as 1,3,5; write each person's name or number as in 'actum "
+            "record --person'. Default: recordings of all people"
         )
     ),
 ]
@@ -29,8 +29,8 @@ AgentOption = Annotated[
     typer.Option(
         min=1,
         help=(
-            "number of the person who acts, as in the field 'agent' of messages; default: the person nearest "
-            "to the camera"
+            "number of the person who acts, as in the field 'agent' of messages. Default: the person nearest to the "
+            "camera"
         ),
     ),
 ]
@@ -39,8 +39,8 @@ AllOption = Annotated[
     typer.Option(
         "--all",
         help=(
-            "also use recordings marked as excluded, such as those in which 'actum record --times N' did not find N "
-            "repetitions"
+            "also use recordings marked as excluded, such as a recording in which 'actum record --times 5' did not "
+            "find 5 repetitions"
         ),
     ),
 ]

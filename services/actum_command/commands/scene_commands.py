@@ -33,9 +33,9 @@ def simulate(
 ) -> None:
     """Write a recording of simulated actions with their labels, without images, for training or testing.
 
-    With --everyday the person also shows background activities, such as scratching, phoning or walking away, which a
-    model should not recognise as actions. Train with --everyday familiar and test with --everyday all, which includes
-    kinds of background activity that familiar omits.
+    With --everyday, the person also does background activities, such as scratching, phoning or walking away. A model
+    should not recognise these activities as actions. Train with --everyday familiar and test with --everyday all,
+    because all includes kinds of background activity that familiar omits.
     """
     refuse_output(output)
     try:
@@ -49,7 +49,7 @@ def simulate(
 def scene() -> None:
     """Publish start and end marks for the actions of the simulated scene, until Ctrl-C.
 
-    Use this command to try recognition with marks if 'actum up' was started without --marked.
+    Use this command to try recognition with marks while 'actum up' runs without --marked.
     """
     with connect_whenever() as client:
         mark_truth(client, stop_on_signals())

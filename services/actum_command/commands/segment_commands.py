@@ -26,8 +26,8 @@ WAIT_S = 5.0  # how long to wait for a classifier that is starting to subscribe
 app = PlainTyper(
     no_args_is_help=True,
     help=(
-        "Mark the start and the end of an action by hand, to label a recording or to have exactly this action "
-        "recognised."
+        "Mark the start and the end of an action by hand. Use marks to label actions while recording, or to choose the "
+        "exact segment in which the classifier recognises an action."
     ),
 )
 
@@ -35,22 +35,24 @@ Id = Annotated[
     str,
     typer.Argument(
         help=(
-            "any name for this action, such as a1; use the same name for start and end, and a new name for each action"
+            "any name for this action, such as a1. Use the same name for the start and the end, and a new name for "
+            "each action"
         )
     ),
 ]
 HandOption = Annotated[str | None, typer.Option(help="the hand that acts, left or right; default: not specified")]
 LabelOption = Annotated[
     str | None,
-    typer.Option(help="label of the action, such as wave, stored by 'actum record' for training; default: no label"),
+    typer.Option(
+        help=("label of the action, such as wave. 'actum record' stores this label for training. Default: no label")
+    ),
 ]
 StampOption = Annotated[
     int | None,
     typer.Option(
         min=0,
         help=(
-            "time of the mark in nanoseconds, on the clock that the sensor uses for the field 'stamp_ns' of its "
-            "messages; default: now"
+            "time of the mark (ns), by the same clock as the field 'stamp_ns' of the sensor's messages. Default: now"
         ),
     ),
 ]
@@ -65,7 +67,7 @@ def start(
     label: LabelOption = None,
     stamp_ns: StampOption = None,
 ) -> None:
-    """Mark the start of an action; mark its end with 'actum segment end' and the same SEGMENT_ID."""
+    """Mark the start of an action. To mark the end of this action, use 'actum segment end' with the same SEGMENT_ID."""
     mark = _mark("start", segment_id, agent=agent, hand=hand, label=label, stamp_ns=stamp_ns)
     with connect() as client:
         _put(client, mark)
@@ -74,7 +76,7 @@ def start(
 @app.command()
 @with_router_flags
 def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
-    """Mark the end of the action that was started with this SEGMENT_ID; the classifier then publishes its answer."""
+    """Mark the end of the action whose start has the same SEGMENT_ID; the classifier then publishes its answer."""
     mark = _mark("end", segment_id, stamp_ns=stamp_ns)
     with connect() as client:
         _put(client, mark)
@@ -85,7 +87,7 @@ def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
 def toggle(label: LabelOption = None, agent: AgentOption = None, hand: HandOption = None) -> None:
     """Mark actions with the Enter key: first the start of an action, then its end. Ctrl-D quits.
 
-    After each end, the command prints which action was recognised.
+    After each end mark, the command prints which action was recognised.
     """
     with connect() as client:
         answers, number = Answers(client), 0

@@ -29,7 +29,7 @@ def with_router_flags(command: Command, read: type[ServiceSettings] = ServiceSet
     """
     flags = {}
     for name, variable in ROUTER_VARIABLES.items():
-        words: dict[str, Any] = {"help": read.model_fields[name].description, "envvar": variable}
+        words: dict[str, Any] = {"help": explained(read.model_fields[name]), "envvar": variable}
         also = (SEVERAL,) if name == "sensor" and issubclass(read, NodeSettings) else ()
         flags[name] = Annotated[str | None, typer.Option(flag_of(name), *also, metavar="TEXT", **words)]
 

@@ -52,7 +52,7 @@ def router(
         Path | None,
         typer.Option(
             help=(
-                "a configuration file for the Zenoh router (JSON5); default: a configuration that is built into actum"
+                "a configuration file for the Zenoh router (JSON5). Default: the configuration that is built into actum"
             ),
             exists=True,
         ),
@@ -70,13 +70,13 @@ def router(
         str | None,
         typer.Option(
             help=(
-                "address of a router on another host to connect to, such as tcp/192.168.1.6:7447; the programs of both "
-                "hosts then exchange messages. Default: no other router"
+                "address of the router on another host, such as tcp/192.168.1.6:7447. The two routers connect, so that "
+                "programs on both hosts exchange messages. Default: no connection to another router"
             )
         ),
     ] = None,
 ) -> None:
-    """Run the Zenoh router alone, for services that are started one by one or on several hosts.
+    """Run only the Zenoh router, for services that are started one by one or on several hosts.
 
     Do not run this command beside 'actum up', which starts its own router. With --credentials, the router restarts
     itself when its certificate is renewed.
@@ -97,17 +97,17 @@ def up(
     source: Annotated[
         str | None,
         typer.Option(
-            help=f"where the skeletons of people come from: {', '.join(SOURCES)}, simulator (a simulated person), or "
-            "none (another program publishes them). Default: camera if --camera is given, otherwise simulator"
+            help=f"where skeletons come from: {', '.join(SOURCES)}, simulator (a simulated person), or none (another "
+            "program publishes skeletons). Default: camera if --camera is given, otherwise simulator"
         ),
     ] = None,
     model: Annotated[
         Path | None,
         typer.Option(
             help=(
-                "the model file (.npz); it is loaded when it appears and whenever it changes. Default: the model that "
-                "was last put into use on the web page; if there is none and the scene is simulated, the model "
-                "supplied with actum"
+                "the model file (.npz). The classifier loads this file as soon as the file exists, and again whenever "
+                "the file changes. Default: the model that was last chosen on the web page; if no model was chosen "
+                "there, simulated scenes use the model supplied with actum"
             ),
             envvar="ACTUM_MODEL",
         ),
@@ -117,23 +117,26 @@ def up(
         typer.Option(
             "--marked",
             help=(
-                "publish the start and end of each action of the simulated person; default: the classifier has to find "
-                "the actions by itself"
+                "mark the start and end of each action of the simulated person. Default: no marks, so the classifier "
+                "has to find the actions by itself"
             ),
         ),
     ] = False,
-    page: Annotated[bool, typer.Option("--page/--no-page", help="serve the web page and print its address")] = True,
+    page: Annotated[
+        bool, typer.Option("--page/--no-page", help="serve the web page and print its address; default: on")
+    ] = True,
     *,
     given: Given,
 ) -> None:
     """Run the whole system on this machine until Ctrl-C: the router, all services and the web page.
 
-    Without options, the system runs with a simulated scene; use --camera 0 for a webcam. A service that ends is started
-    again.
+    Without options, the system shows a simulated scene; use --camera 0 for a webcam. If a service ends, the command
+    starts the service again.
 
-    With --sensors left,right, each sensor has its own source and web page; every other service serves both sensors.
-    Give a setting of the source or page once for all sensors, or once for each sensor in their order: --camera 0
-    --camera 2. Simulated scenes get different seeds.
+    For two cameras, use --sensors left,right --camera 0 --camera 2. Each sensor then has its own camera and web page;
+    every other service serves both sensors. If an option of the camera or of the web page occurs once, it applies to
+    all sensors. To set such an option for each sensor, repeat the option in the order of --sensors. Simulated scenes of
+    several sensors have different seeds.
     """
     here = settings(NodeSettings)
     if here.credentials is not None:
@@ -199,7 +202,8 @@ def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.E
 def ros2(*, given: Given) -> None:
     """Exchange messages with ROS 2 until Ctrl-C: publish skeletons, objects and events; receive start and end marks.
 
-    The ROS 2 nodes have to use rmw_zenoh and the same router (--connect). ROS 2 need not be installed on this machine.
+    The ROS 2 nodes must use rmw_zenoh and the same Zenoh router (--connect). ROS 2 need not be installed on this
+    machine.
     """
     with needs_extra("ros2"):
         from ros2_bridge.bridge import Ros2Bridge

@@ -19,27 +19,28 @@ from actum_model_trainer.samples import LabelledStream, Samples
 from actum_model_trainer.sampling import sampled_from
 from actum_model_trainer.side_by_side import at_most
 from actum_model_trainer.training import add_to, train_to_spot, with_continuation
-from som_classifier.attention import ATTENTIONS, MOVING
+from som_classifier.attention import ALL, MOVING, PART_NAMES
 from som_classifier.model import Arrays, Model
 from som_classifier.model_loading import ModelError, kept_in, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of recordings")]
 PRESET_HELP = (
-    f"kind of model to train: {PAPER.name} is the method of the paper that actum implements (Gharaee et al. 2017); "
-    f"{DEFAULT.name} is more accurate"
+    f"kind of model to train. {PAPER.name}: the method of the paper that actum implements (Gharaee et al. 2017). "
+    f"{DEFAULT.name} (default): a more accurate method"
 )
 SET_HELP = (
     f"change a setting of --preset {PAPER.name}; may be repeated. axes=upright (default): one coordinate axis "
-    "stays vertical, and the others turn smoothly with the body. axes=posture: all axes turn with the body in each "
-    "frame. origin=torso (default) or origin=hips: the point from which positions are measured. attention=PART: only "
-    f"this body part's joints are used: {', '.join(part for part in ATTENTIONS if part != MOVING)} or {MOVING} "
-    "(default: the part that moves most)"
+    "stays vertical, and the other axes turn smoothly with the body. axes=posture: all axes turn with the body in each "
+    "frame. origin=torso (default) or origin=hips: the point from which positions are measured. "
+    f"attention={MOVING} (default): use only the joints of the body part that moves most. attention={ALL}: use all "
+    f"joints. attention={', '.join(PART_NAMES[:-1])} or {PART_NAMES[-1]}: use only the joints of this part"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
-    "examples of movement that the model learns to ignore. 'shipped' (default): half an hour of simulated people, "
-    "supplied with actum; 'none': no examples; otherwise a recording (.mcap) or a folder of recordings. May be repeated"
+    "examples of background activity, which the model learns to ignore. shipped (default): half an hour of simulated "
+    "people, supplied with actum. none: no examples. FILE: a recording (.mcap) or a folder of recordings. May be "
+    "repeated"
 )
 SHIPPED, NONE = "shipped", "none"
 PRESETS_SHOWN = f"<{'|'.join(PRESETS)}>"
@@ -47,17 +48,18 @@ PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HE
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
 SeedOption = Annotated[int, typer.Option(min=0, help=SEED_HELP)]
 JOBS_HELP = (
-    "number of parts of a training that run at the same time; each part takes memory. Default: the number of "
-    "processors. The number does not change the model"
+    "number of threads for training. More threads train faster and take more memory, but train the same model. "
+    "Default: one thread per processor"
 )
 ADD_TO_HELP = (
-    "add the recorded examples to this model, which keeps its maps, instead of training a new one. The recordings may "
-    "show new actions or known ones. Takes about a second"
+    "add the examples in the recordings to this model, instead of training a new model. The examples may show new "
+    "actions or actions that the model knows already. The model's self-organizing maps do not change. Takes about a "
+    "second"
 )
 
 CONTINUE_HELP = (
-    "also train the prediction of how a person's posture goes on in the next second. Takes some seconds, and makes the "
-    "model file larger"
+    "also train a prediction of the person's posture in the next second. This prediction takes some seconds to train, "
+    "and makes the model file larger"
 )
 
 
@@ -77,7 +79,7 @@ def train_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
     jobs: Annotated[int | None, typer.Option(min=1, help=JOBS_HELP)] = None,
     continued: Annotated[bool, typer.Option("--continue", help=CONTINUE_HELP)] = False,
 ) -> None:
-    """Train a model on labelled recordings, and write it to a file for 'actum up --model'."""
+    """Train a model on labelled recordings, and write the model to a file for 'actum up --model'."""
     began_s = time.monotonic()
     refuse_place(output, ".npz")
     chosen_preset = preset_named(preset, settings or ())

@@ -38,8 +38,8 @@ def tune(
         typer.Argument(
             metavar="REC...",
             help=(
-                "recordings, or folders of recordings, in which all actions are labelled and people also do other "
-                "things between the actions"
+                "recordings, or folders of recordings. All actions in the recordings must be labelled, and between the "
+                "actions people must also do other things"
             ),
         ),
     ],
@@ -56,8 +56,8 @@ def tune(
             "-o",
             "--output",
             help=(
-                "the file to write the chosen settings to (.toml); services read this file if ACTUM_CONFIG is set to "
-                "its path. Default: the settings are only printed"
+                "the file to which the chosen settings are written (.toml). Services read this file if ACTUM_CONFIG is "
+                "set to the file's path. Default: the settings are only printed"
             ),
         ),
     ] = None,
@@ -66,8 +66,8 @@ def tune(
 ) -> None:
     """Choose the settings with which a model best finds actions by itself, and print the settings and their effect.
 
-    The command chooses --false-alarms-per-min, --shortest-pause-s, --cooldown-s and --disabled-actions of the
-    classifier.
+    The command chooses the classifier's settings --false-alarms-per-min, --shortest-pause-s, --cooldown-s and
+    --disabled-actions.
     """
     began_s = time.monotonic()
     if false_alarms_per_min is not None and not 0 < false_alarms_per_min < float("inf"):

@@ -21,26 +21,26 @@ if TYPE_CHECKING:
 def view(
     recording: RecordingArgument = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="write a Rerun file (.rrd) in place of opening a viewer")
+        Path | None, typer.Option("-o", "--output", help="write a Rerun file (.rrd) instead of opening a viewer")
     ] = None,
     web: Annotated[
         bool,
         typer.Option(
             "--web",
             help=(
-                "serve the viewer as a page for a browser on this machine and print its address, in place of opening a "
-                "window"
+                "show the viewer in a browser on this machine instead of in a window; the command prints the address "
+                "to open"
             ),
         ),
     ] = False,
-    port: Annotated[int, typer.Option(min=1, max=65535, help="port at which the Rerun viewer receives data")] = 9876,
+    port: Annotated[int, typer.Option(min=1, max=65535, help="port on which the Rerun viewer receives data")] = 9876,
     web_port: Annotated[
-        int, typer.Option(min=1, max=65535, help="port of the page of the Rerun viewer; used only with --web")
+        int, typer.Option(min=1, max=65535, help="port of the Rerun viewer's web page; used only with --web")
     ] = 9090,
 ) -> None:
-    """Show live streams or a recording in the Rerun viewer: people, objects, images, curves and events, until Ctrl-C.
+    """Show live streams or a recording in the Rerun viewer until Ctrl-C: people, objects, images, plots and events.
 
-    A recording is loaded as a whole, so that you can move back and forth in it.
+    The whole recording is loaded, so that you can move back and forth in the recording.
     """
     refuse_without("rerun", "rerun-sdk", "view")
     if output is not None:

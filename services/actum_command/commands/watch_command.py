@@ -37,26 +37,31 @@ def watch(
     ] = False,
     with_held_back: Annotated[
         bool,
-        typer.Option("--held-back", help="also print segments that were found but not published, with the reason"),
+        typer.Option(
+            "--held-back",
+            help="also print the segments that the classifier found but did not publish, each with the reason",
+        ),
     ] = False,
     recorded: Annotated[
         list[Path] | None,
         typer.Option(
             "--from",
             help=(
-                "print the messages of these recordings, or of all recordings in these folders, in place of live "
+                "print the messages of these recordings, or of all recordings in these folders, instead of live "
                 "messages"
             ),
         ),
     ] = None,
 ) -> None:
-    """Print live messages, one per line with time, key, segment id and content, until Ctrl-C.
+    """Print live messages until Ctrl-C, one message per line, with time, key, segment id and content.
 
-    For the topic 'intent' (the objects that a hand reaches for), a line is printed when the likeliest object changes,
-    when its probability first passes 0.5 and 0.9, and when the reach ends; --json prints every message.
+    For the topic 'intent' (the objects that a hand reaches for), the command prints a line only when the likeliest
+    object changes, when the probability of this object first reaches 0.5 or 0.9, and when the reach ends. With --json,
+    the command prints every message.
 
-    On a terminal, a line at the bottom also shows each person's ongoing action and how complete it is. With --from, the
-    command prints messages from recordings instead, also from one that 'actum record --events' is still writing.
+    On a terminal, a line at the bottom also shows each person's ongoing action and its completeness. With --from, the
+    command prints the messages of recordings instead, even of a recording that 'actum record --events' is still
+    writing.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):
