@@ -81,7 +81,7 @@ def observed(simulator: HardSimulator) -> Iterator[Message]:
                 yield message
                 started.setdefault(message.segment_id, message.stamp_ns)
                 if message.kind == "end":
-                    yield _recognised(message, started[message.segment_id])
+                    yield recognised(message, started[message.segment_id])
 
 
 def _tracker_settings(simulator: HardSimulator) -> TrackerSettings:
@@ -90,7 +90,8 @@ def _tracker_settings(simulator: HardSimulator) -> TrackerSettings:
     return TrackerSettings(objects=specs)
 
 
-def _recognised(end: Truth, start_ns: int) -> Action:
+def recognised(end: Truth, start_ns: int) -> Action:
+    """Answer a segment as a classifier that is always right would."""
     return Action(
         stamp_ns=end.stamp_ns,
         sensor=end.sensor,
