@@ -37,18 +37,14 @@ SOURCE_ROWS = {
 knee A B, ankle A B, foot A B, head. The actor's right is B."""
 
 
-def write_sequence(path: Path, frames: int, empty: tuple[int, ...] = ()) -> None:
+def sequence(folder: Path, name: str = "a01_s02_e03", frames: int = 3, empty: tuple[int, ...] = ()) -> Path:
     """Joint row r (from 1) of frame i lies at (r, 10 i, 2) with confidence r / 32."""
+    path = folder / f"{name}_skeleton3D.txt"
     with path.open("w") as file:
         for i in range(frames):
             for row in range(1, 21):
                 numbers = (0, 0, 0, 0) if i in empty else (row, 10 * i, 2, row / 32)
                 file.write(" ".join(f"{number:.6f}" for number in numbers) + "\n")
-
-
-def sequence(folder: Path, name: str = "a01_s02_e03", frames: int = 3, empty: tuple[int, ...] = ()) -> Path:
-    path = folder / f"{name}_skeleton3D.txt"
-    write_sequence(path, frames, empty)
     return path
 
 
