@@ -38,12 +38,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return teacher.folder
 
 
-@pytest.fixture
-def teacher(taught: Path, tmp_path: Path) -> Teacher:
-    shutil.copytree(taught, tmp_path / "copy")
-    return Teacher(tmp_path / "copy")
-
-
 Finish = Callable[[], dict[str, Any]]
 
 

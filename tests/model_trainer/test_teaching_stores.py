@@ -39,12 +39,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return teacher.folder
 
 
-@pytest.fixture
-def teacher(taught: Path, tmp_path: Path) -> Teacher:
-    shutil.copytree(taught, tmp_path / "copy")
-    return Teacher(tmp_path / "copy")
-
-
 def send(teacher: Teacher, name: str = "clip.mp4", data: bytes = b"video", offset: int = 0, last: bool = True) -> None:
     teacher.ask("upload", name=name, offset=offset, data=base64.b64encode(data).decode(), last=last)
 
