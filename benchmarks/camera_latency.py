@@ -120,8 +120,7 @@ def live(folder: Path, video: Path) -> Stopwatch:
     watch = Stopwatch()
     with ExitStack() as stack:
         supervisor = stack.enter_context(Supervisor(folder / "log"))
-        for program in (processes.router(SETTINGS), *processes.services(SETTINGS, folder / "model.npz", {})):
-            supervisor.start(program)
+        supervisor.start(processes.router(SETTINGS), *processes.services(SETTINGS, folder / "model.npz", {}))
         client = stack.enter_context(Client(SETTINGS, wait_s=30.0))
         for topic in (keys.SEGMENT, keys.SKELETON, keys.OBJECTS, keys.COLOR):
             assert client.wait_for_subscriber(topic, 30.0)

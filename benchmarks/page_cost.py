@@ -63,8 +63,7 @@ def live(folder: Path) -> Iterator[tuple[Client, str]]:
         supervisor.start(processes.router(SETTINGS))
         with Client(SETTINGS, wait_s=30.0) as client:
             system = processes.system(SETTINGS, "simulator", ModelInUse(model), SCENE)
-            for program in processes.with_page(SETTINGS, [*system, processes.scene(SETTINGS)]):
-                supervisor.start(program)
+            supervisor.start(*processes.with_page(SETTINGS, [*system, processes.scene(SETTINGS)]))
             while not (pages := [info.page for info in client.infos() if info.page]):
                 time.sleep(0.1)
             yield client, pages[0]

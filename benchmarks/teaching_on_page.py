@@ -98,8 +98,7 @@ def live() -> Iterator[tuple[Client, str]]:
         supervisor.start(processes.router(settings))
         with Client(settings, wait_s=60.0) as client:
             system = processes.system(settings, "simulator", ModelInUse(taught_model(given)), given)
-            for program in processes.with_page(settings, system):
-                supervisor.start(program)
+            supervisor.start(*processes.with_page(settings, system))
             infos: dict[str, Info] = {}
             while not {"web_dashboard", "model_trainer"} <= infos.keys():
                 time.sleep(0.1)

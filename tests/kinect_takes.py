@@ -25,7 +25,7 @@ def times(marks: list[Segment]) -> list[tuple[str, str, int, str | None]]:
 
 def facing(take: Take) -> float:
     """Median cosine between the body's forward axis (left x up) and the way from the torso to the camera."""
-    joints = np.array([frame.agents[0].joints for frame in take.frames])
+    joints = np.array([frame.agents[0].joints for frame in take.frames if frame.agents])
     left = joints[:, INDEX["left_hip"]] - joints[:, INDEX["right_hip"]]
     up = joints[:, INDEX["torso"]] - (joints[:, INDEX["left_hip"]] + joints[:, INDEX["right_hip"]]) / 2
     forward, to_camera = np.cross(left, up), -joints[:, INDEX["torso"]]

@@ -42,8 +42,8 @@ class Lesson:
         """End the running job; one that trains leaves a model."""
         with self._lock:
             job = self.teacher.jobs[-1]
-            if job.request.kind == "train" and result is not None:
-                tiny_model().save(job.request.folder / "model.npz")
+            if job.arguments.kind == "train" and result is not None:
+                tiny_model().save(job.arguments.folder / "model.npz")
             job.news = Ended(result, error)
 
     def tell(self) -> None:

@@ -159,3 +159,9 @@ def maps(_service: str, command: str, **_fields: Any) -> dict[str, Any]:
         "posture_map": {"rows": 3, "columns": 4, "bodies": [body] * 12},
         "action_map": {"rows": 2, "columns": 3, "labels": [*LABELS, *LABELS]},
     }
+
+
+def wait_for_state(page: Any, text: str) -> None:
+    page.wait_for_function(
+        "text => document.getElementById('state').textContent.includes(text)", arg=text, timeout=60_000
+    )

@@ -7,7 +7,8 @@ from typing import Any
 
 from actum.messages import Message, Segment, Skeleton, Training
 from actum.node import SECOND_NS, TICK_NS, Tick
-from model_trainer.job_process import Ended, JobRequest, Progressing
+from model_trainer.job import Arguments
+from model_trainer.job_process import Ended, Progressing
 from model_trainer.original_model import OriginalModel
 from model_trainer.trainer import ModelTrainer
 from people import FRAME_NS
@@ -20,8 +21,8 @@ GOGGLINGS = [moved(held(60), GOGGLES)] * 5
 class ScriptedJob:
     """A job that says what the test wants."""
 
-    def __init__(self, request: JobRequest) -> None:
-        self.request = request
+    def __init__(self, arguments: Arguments) -> None:
+        self.arguments = arguments
         self.news: Progressing | Ended | None = None
         self.ended = False
 
@@ -35,7 +36,7 @@ class ScriptedJob:
 class Teacher:
     """Asks a trainer as a program would, and acts before its camera."""
 
-    def __init__(self, folder: Path, start: Callable[[JobRequest], Any] | None = None) -> None:
+    def __init__(self, folder: Path, start: Callable[[Arguments], Any] | None = None) -> None:
         self.folder, self.model, self.original = folder, folder / "in-use.npz", folder / "mine" / "model.npz"
         self.jobs: list[ScriptedJob] = []
         self.told: list[Training] = []
@@ -56,8 +57,8 @@ class Teacher:
         )
         self._commands = {command.name: command for command in self.trainer.commands}
 
-    def _scripted(self, request: JobRequest) -> ScriptedJob:
-        self.jobs.append(ScriptedJob(request))
+    def _scripted(self, arguments: Arguments) -> ScriptedJob:
+        self.jobs.append(ScriptedJob(arguments))
         return self.jobs[-1]
 
     def ask(self, command: str, **fields: Any) -> dict[str, Any]:

@@ -164,18 +164,13 @@ def live(video: Path, model: Path, mirrored: bool) -> Watched:
         arguments = ["--source", "camera", "--camera", str(video), "--people", "1", "--no-images"]
         gateway = processes.gateway(LIVE, [*arguments, *(["--mirrored"] if mirrored else [])])
         supervisor.start(gateway)
-        _wait_for_end(ear)
+        began_s = time.monotonic()
+        while not ear.skeletons:
+            assert time.monotonic() - began_s < READY_S, "no skeleton arrives"
+            time.sleep(0.1)
+        while time.time_ns() - ear.skeletons[-1][1] < PATIENCE_S * SECOND_NS:
+            time.sleep(0.1)
     return Watched(ear.skeletons, ear.actions)
-
-
-def _wait_for_end(ear: Ear) -> None:
-    """Wait until no skeleton has arrived for a while."""
-    began_s = time.monotonic()
-    while not ear.skeletons:
-        assert time.monotonic() - began_s < READY_S, "no skeleton arrives"
-        time.sleep(0.1)
-    while time.time_ns() - ear.skeletons[-1][1] < PATIENCE_S * SECOND_NS:
-        time.sleep(0.1)
 
 
 def header(videos: Mapping[str, Joined]) -> Iterator[str]:

@@ -55,8 +55,7 @@ class TwoHosts:
         for proxy in self._proxies.values():
             self._closing.enter_context(proxy)
         self._supervisor = self._closing.enter_context(Supervisor(self.log))
-        for program in self._programs.values():
-            self._supervisor.start(program)
+        self._supervisor.start(*self._programs.values())
         return self
 
     def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:

@@ -81,7 +81,8 @@ def judge(
 ) -> Judgement:
     """Judge what was heard; `undisturbed` is what is told of each action where nothing fails, by its number."""
     segments = [_judged(each, heard, undisturbed[each.action.number], strikes) for each in marked]
-    told_of = _told_of(heard)
+    told_first = {name: heard.events[name][0].content for name in sorted(heard.found) if heard.events[name]}
+    told_of = {name: content for name, content in told_first.items() if isinstance(content, Event)}
     both = sum(any(_shared_s(event, each.marked) > 0 for each in segments) for event in told_of.values())
     return Judgement(segments, heard.found, both, [*_twice(heard), *_overlapping(told_of)])
 
@@ -149,12 +150,6 @@ def _twice(heard: Heard) -> list[str]:
         for name in sorted(heard.found)
         if heard.contents(name) > 1
     ]
-
-
-def _told_of(heard: Heard) -> dict[str, Event]:
-    """Return what was told of the segments that were found."""
-    told_first = {name: heard.events[name][0].content for name in sorted(heard.found) if heard.events[name]}
-    return {name: content for name, content in told_first.items() if isinstance(content, Event)}
 
 
 def _overlapping(told_of: Mapping[str, Event]) -> list[str]:

@@ -4,11 +4,12 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
+from benchmarks.objects.observing import recognised
 
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings as FusionSettings
 from actum.arrays import Array
-from actum.messages import Action, Event, Message, Objects, Skeleton, TrackedObject, Truth
+from actum.messages import Event, Message, Objects, Skeleton, TrackedObject, Truth
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from scene_simulator.group import Group
@@ -37,7 +38,7 @@ def inputs() -> Iterator[Message]:
             if truth.kind == "start":
                 started[truth.agent] = truth.stamp_ns
             else:
-                yield final_action(truth, started[truth.agent])
+                yield recognised(truth, started[truth.agent]).model_copy(update={"part": f"{truth.hand}_arm"})
 
 
 def objects(skeleton: Skeleton, centres_m: Array) -> Objects:
@@ -54,25 +55,6 @@ def objects(skeleton: Skeleton, centres_m: Array) -> Objects:
         for number, centre_m in enumerate(centres_m.tolist())
     ]
     return Objects(stamp_ns=skeleton.stamp_ns, sensor=skeleton.sensor, objects=placed, session_id=skeleton.session_id)
-
-
-def final_action(truth: Truth, start_ns: int) -> Action:
-    """Answer a segment as a classifier that is always right would."""
-    return Action(
-        stamp_ns=truth.stamp_ns,
-        sensor=truth.sensor,
-        agent=truth.agent,
-        segment_id=truth.segment_id,
-        start_ns=start_ns,
-        end_ns=truth.stamp_ns,
-        final=True,
-        action=truth.action,
-        confidence=0.9,
-        activations={},
-        part=f"{truth.hand}_arm",
-        frames=1,
-        missed=0,
-    )
 
 
 def decisions_ms(messages: list[Message]) -> tuple[list[float], list[Event]]:

@@ -29,8 +29,7 @@ def resident_mb(folder: Path) -> dict[str, float]:
     bare = subprocess.run([sys.executable, "-c", BARE], capture_output=True, text=True, check=True)
     with ExitStack() as stack:
         supervisor = stack.enter_context(Supervisor(folder / "memory-log"))
-        for program in (processes.router(SETTINGS), *processes.services(SETTINGS, SIMULATED_MODEL, {})):
-            supervisor.start(program)
+        supervisor.start(processes.router(SETTINGS), *processes.services(SETTINGS, SIMULATED_MODEL, {}))
         client = stack.enter_context(Client(SETTINGS, wait_s=STARTING_S))
         assert client.wait_for_subscriber(keys.SKELETON, STARTING_S)
         supervisor.start(processes.simulator(SETTINGS, []))

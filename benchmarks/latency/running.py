@@ -3,7 +3,7 @@
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from itertools import pairwise
@@ -36,8 +36,8 @@ def beside_bare_chain(folder: Path, sizes: Mapping[str, int]) -> Stopwatch:
     """Play the scene through the processes and the bare chain."""
     watch = Stopwatch()
     with ExitStack() as stack:
-        services = processes.services(OPEN, folder / "model.npz", {})
-        start(stack, folder / "log", [processes.router(OPEN), *services])
+        supervisor = stack.enter_context(Supervisor(folder / "log"))
+        supervisor.start(processes.router(OPEN), *processes.services(OPEN, folder / "model.npz", {}))
         stack.enter_context(bare_chain(sizes))
         client = stack.enter_context(Client(OPEN, wait_s=STARTING_S))
         for topic in WHO_PUTS:
@@ -55,7 +55,8 @@ def behind_security(folder: Path) -> Stopwatch:
     watch, root = Stopwatch(), folder / "deployment"
     write_deployment(SECURED, root, days=1)
     with ExitStack() as stack:
-        start(stack, folder / "secured-log", [router(root), *secured(root, folder / "model.npz")])
+        supervisor = stack.enter_context(Supervisor(folder / "secured-log"))
+        supervisor.start(router(root), *secured(root, folder / "model.npz"))
         clients = {topic: stack.enter_context(client(root, who)) for topic, who in WHO_PUTS.items()}
         for topic, putting in clients.items():
             assert putting.wait_for_subscriber(topic, STARTING_S)
@@ -70,13 +71,6 @@ def behind_security(folder: Path) -> Stopwatch:
         play(ours(put, watch))
         time.sleep(PATIENCE_S)
     return watch
-
-
-def start(stack: ExitStack, logs: Path, programs: Sequence[Program]) -> None:
-    """Run programs until the stack is left."""
-    supervisor = stack.enter_context(Supervisor(logs))
-    for program in programs:
-        supervisor.start(program)
 
 
 def settings(root: Path, who: str) -> ServiceSettings:

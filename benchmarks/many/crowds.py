@@ -95,8 +95,7 @@ def _live(people: int, classifiers: int, model: Path) -> tuple["Watch", Answers,
     watch, first = Watch(), SETTINGS.of_each_sensor[0]
     with ExitStack() as stack:
         supervisor = stack.enter_context(Supervisor(model.with_name("crowds.log")))
-        for program in (processes.router(first), *_programs(classifiers, model)):
-            supervisor.start(program)
+        supervisor.start(processes.router(first), *_programs(classifiers, model))
         client = stack.enter_context(Client(first, wait_s=STARTING_S))
         client.tap(keys.pattern(keys.ACTION), watch.hear_action)
         client.follow(keys.pattern(keys.STATUS), watch.hear_status)

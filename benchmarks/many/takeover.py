@@ -57,8 +57,7 @@ def takeover(model: Path, seed: int = 1) -> Iterator[str]:
     with ExitStack() as stack:
         supervisor = stack.enter_context(Supervisor(model.with_name("takeover.log")))
         programs = {name: _classifier(name, model) for name in NAMES}
-        for program in (processes.router(SETTINGS.of_each_sensor[0]), *programs.values()):
-            supervisor.start(program)
+        supervisor.start(processes.router(SETTINGS.of_each_sensor[0]), *programs.values())
         clients = {own.sensor: stack.enter_context(Client(own, wait_s=STARTING_S)) for own in SETTINGS.of_each_sensor}
         clients[SENSORS[0]].follow(keys.pattern(keys.ACTION), hear)
         for client in clients.values():

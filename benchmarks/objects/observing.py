@@ -1,6 +1,6 @@
 """The services look on while simulated people act: drawn images, detected markers, hands with a Kinect's noise."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +8,7 @@ from benchmarks.rig.hard_scenes.conditions import Conditions
 from benchmarks.rig.hard_scenes.hard_simulator import HardSimulator
 
 from action_fusion.settings import Settings
-from actum.messages import Action, Event, Image, Message, Objects, Skeleton, Truth
+from actum.messages import Action, Image, Message, Objects, Skeleton, Truth
 from actum.skeletons import INDEX
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import ObjectSpec
@@ -19,7 +19,7 @@ from scene_simulator.actor import EYE
 from scene_simulator.programme import Task
 
 from .trials import OURS, Trial
-from .unmarked import Unmarked, events_of, told_unmarked
+from .unmarked import events_of, told_unmarked
 
 TAIL_S = 1.5
 """How long a scene goes on after its last action, so that it can be found."""
@@ -46,25 +46,17 @@ class Scene:
         events = {name: events_of(stream, settings) for name, settings in MEASURES.items()}
         unmarked = told_unmarked(stream, events[OURS], MEASURES[OURS])
         ends = [message for message in stream if isinstance(message, Truth) and message.kind == "end"]
-        return [_trial(simulator, stream, number, end, events, unmarked) for number, end in enumerate(ends)]
-
-
-def _trial(
-    simulator: HardSimulator,
-    stream: Sequence[Message],
-    number: int,
-    end: Truth,
-    events: Mapping[str, Sequence[Event]],
-    unmarked: Sequence[Unmarked],
-) -> Trial:
-    return Trial(
-        truth=end,
-        displacement_m=own_displacement(simulator, number, end),
-        line_right=_line_right(simulator, number),
-        seen_left=seen_left(simulator, stream, number, end),
-        events={measure: of_measure[number] for measure, of_measure in events.items()},
-        unmarked=unmarked[number],
-    )
+        return [
+            Trial(
+                truth=end,
+                displacement_m=own_displacement(simulator, number, end),
+                line_right=_line_right(simulator, number),
+                seen_left=seen_left(simulator, stream, number, end),
+                events={measure: of_measure[number] for measure, of_measure in events.items()},
+                unmarked=unmarked[number],
+            )
+            for number, end in enumerate(ends)
+        ]
 
 
 def observed(simulator: HardSimulator) -> Iterator[Message]:
@@ -81,7 +73,7 @@ def observed(simulator: HardSimulator) -> Iterator[Message]:
                 yield message
                 started.setdefault(message.segment_id, message.stamp_ns)
                 if message.kind == "end":
-                    yield _recognised(message, started[message.segment_id])
+                    yield recognised(message, started[message.segment_id])
 
 
 def _tracker_settings(simulator: HardSimulator) -> TrackerSettings:
@@ -90,7 +82,8 @@ def _tracker_settings(simulator: HardSimulator) -> TrackerSettings:
     return TrackerSettings(objects=specs)
 
 
-def _recognised(end: Truth, start_ns: int) -> Action:
+def recognised(end: Truth, start_ns: int) -> Action:
+    """Answer a segment as a classifier that is always right would."""
     return Action(
         stamp_ns=end.stamp_ns,
         sensor=end.sensor,

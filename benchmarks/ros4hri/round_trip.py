@@ -23,7 +23,6 @@ from actum.recording import Recording
 from actum_dataset_importer.importing import import_msr_action3d
 from actum_model_trainer.answering import answer, encoded
 from actum_model_trainer.sample_reading import samples_from
-from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
 from ros2_bridge.bridge import Ros2Bridge
 from ros2_bridge.message_types import TF_MESSAGE, from_cdr, made, to_cdr
@@ -103,11 +102,7 @@ def _received(put: Foreign) -> Foreign:
 def answers(model: Model, recordings: Sequence[Recording]) -> Answers:
     """Answer each labelled sequence once it has ended; one that is lost on the way is missing."""
     samples = samples_from(recordings).usable
-    return {_name(each): (answer(model, encoded(model, each), 1.0).label, each.label) for each in samples}
-
-
-def _name(sample: SegmentSample) -> str:
-    return sample.segment_id
+    return {each.segment_id: (answer(model, encoded(model, each), 1.0).label, each.label) for each in samples}
 
 
 def of_round_trip(data: ImportedSets) -> Iterator[str]:

@@ -74,8 +74,7 @@ def running(folder: Path) -> Iterator[tuple[Client, Memory, Watch]]:
     watch = Watch()
     with ExitStack() as stack:
         supervisor = stack.enter_context(Supervisor(folder / "log"))
-        for program in programs(folder):
-            supervisor.start(program)
+        supervisor.start(*programs(folder))
         client = stack.enter_context(Client(SETTINGS, wait_s=30.0))
         wait_for_all(client)
         client.tap(

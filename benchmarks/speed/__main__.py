@@ -34,7 +34,10 @@ def main(commit: str, rounds: int) -> bool:
         other = Path(name) / "tree"
         subprocess.run(["git", "worktree", "add", "--quiet", "--detach", other, commit], cwd=ROOT, check=True)
         try:
-            compile_steps(other)
+            # an older commit has no steps
+            if core.steps is not None and (other / SOURCE).exists():
+                problem = compiled(other / SOURCE, other / LIBRARY)
+                assert problem is None, problem
             turns = [(measured(ROOT), measured(other)) for _ in range(rounds)]
         finally:
             subprocess.run(["git", "worktree", "remove", "--force", other], cwd=ROOT, check=True)
@@ -44,13 +47,6 @@ def main(commit: str, rounds: int) -> bool:
     slower = [what for what, ratio in ratios.items() if ratio < SLOWER]
     console.print(f"slower by a tenth or more: {'; '.join(slower) if slower else 'nothing'}")
     return not slower
-
-
-def compile_steps(tree: Path) -> None:
-    """Compile the steps of another commit as this installation has them compiled; an older commit has none."""
-    if core.steps is not None and (tree / SOURCE).exists():
-        problem = compiled(tree / SOURCE, tree / LIBRARY)
-        assert problem is None, problem
 
 
 def measured(tree: Path) -> Rates:

@@ -72,9 +72,10 @@ class Supervisor:
     def __exit__(self, *_: type[BaseException] | BaseException | TracebackType | None) -> None:
         self.stop()
 
-    def start(self, program: Program) -> None:
-        """Start one program."""
-        self._children.append(_Child(program, self._spawn(program), time.monotonic()))
+    def start(self, *programs: Program) -> None:
+        """Start programs, one after the other."""
+        for program in programs:
+            self._children.append(_Child(program, self._spawn(program), time.monotonic()))
 
     def pids(self) -> dict[int, str]:
         """Return the names of the programs by their processes' ids."""

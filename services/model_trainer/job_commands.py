@@ -8,8 +8,8 @@ from typing import Any
 from actum.commands import Command, Refusal
 from actum.messages import JobState
 from model_trainer.changes import Changes, on_disk
-from model_trainer.job import MODEL, TAKE
-from model_trainer.job_process import Ended, JobProcess, JobRequest
+from model_trainer.job import MODEL, TAKE, Arguments
+from model_trainer.job_process import Ended, JobProcess
 from model_trainer.job_store import Job, JobStore
 from model_trainer.model_store import ModelStore
 from model_trainer.replies import Uploaded, counted
@@ -19,7 +19,7 @@ from model_trainer.upload_store import UploadStore
 from som_classifier.model_loading import ModelError
 from som_classifier.presets import DEFAULT, PRESETS
 
-Start = Callable[[JobRequest], JobProcess]
+Start = Callable[[Arguments], JobProcess]
 """Starts a job."""
 KINDS = {"train": "a training", "evaluate": "a test", "import": "a video import"}
 """What a job is called, by its kind."""
@@ -114,7 +114,7 @@ class JobCommands:
             raise Refusal(f"there is no preset {request.preset!r}: use one of {', '.join(PRESETS)}")
         fields: dict[str, Any] = request.model_dump(include={"preset", "seed", "continued"})
         if request.update is not None:
-            fields["model"] = str(self._models.get(request.update).path)
+            fields["model"] = self._models.get(request.update).path
         return self._start("train", request.set, fields)
 
     def _evaluate(self, request: OfSet) -> Job:
@@ -140,7 +140,7 @@ class JobCommands:
             raise Refusal(
                 f"{KINDS[self._job.kind]} is already running ({self._job.id}): wait until this job ends, or cancel it"
             )
-        takes = str(self._sets.folder(set_name))
+        takes = self._sets.folder(set_name)
         with on_disk():
             job = Job.model_validate(
                 {"id": self._jobs.new_id(), "kind": kind, "set": set_name, "started": self._date()}
@@ -151,9 +151,10 @@ class JobCommands:
                 if upload is not None:
                     (folder / UPLOAD).mkdir()
                     video = self._uploads.move(upload, folder / UPLOAD)
-                    fields = {"video": str(video), **fields}
+                    fields = {"video": video, **fields}
                 self._jobs.keep(job)
-                self._running = self._start_process(JobRequest(kind, folder, {"takes": takes, **fields}))
+                arguments = Arguments.model_validate({"kind": kind, "folder": folder, "takes": takes, **fields})
+                self._running = self._start_process(arguments)
             except OSError:
                 if video is not None:
                     self._uploads.put_back(video)

@@ -5,12 +5,12 @@ import os
 import subprocess
 import sys
 import threading
-from dataclasses import dataclass, field
-from pathlib import Path
+from dataclasses import dataclass
 from typing import Any
 
 from actum.atomic_file import claim
 from actum.runtime.stopping import PARENT
+from model_trainer.job import Arguments
 
 END_S = 2.0
 """How long (s) a job may take to end after SIGTERM, before it is killed."""
@@ -20,21 +20,6 @@ CLAIM = ".running"
 """The file in a job's folder that its service has claimed while the job runs."""
 LAST_WORDS = 400
 """Characters of what a job printed at the end, for one that died."""
-
-
-@dataclass(frozen=True)
-class JobRequest:
-    """The arguments of a job's process.
-
-    Attributes:
-        kind: train, evaluate or import.
-        folder: where it writes what it makes.
-        fields: the other arguments, plain values; see `model_trainer.job.Arguments`.
-    """
-
-    kind: str
-    folder: Path
-    fields: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -56,14 +41,13 @@ class Ended:
 class JobProcess:
     """A running job: `python -m model_trainer.job`, which prints its progress as lines of JSON."""
 
-    def __init__(self, request: JobRequest) -> None:
-        self._errors = request.folder / "errors.txt"
-        arguments = json.dumps({"kind": request.kind, "folder": str(request.folder), **request.fields})
-        self._claimed = (request.folder / CLAIM).open("wb")
+    def __init__(self, arguments: Arguments) -> None:
+        self._errors = arguments.folder / "errors.txt"
+        self._claimed = (arguments.folder / CLAIM).open("wb")
         claim(self._claimed)
         with self._errors.open("wb") as errors:
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "model_trainer.job", arguments],
+                [sys.executable, "-m", "model_trainer.job", arguments.model_dump_json()],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=errors,

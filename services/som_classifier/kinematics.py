@@ -58,7 +58,10 @@ class KinematicsFilter:
         joints = np.ascontiguousarray(joints, np.float64)
         last_ns, self._stamp_ns = self._stamp_ns, stamp_ns
         if last_ns is None or not 0 < stamp_ns - last_ns <= GAP_NS:
-            self._restart(joints)
+            known = ~np.isnan(joints[:, 0])
+            self._known = None if known.all() else known
+            self._before = np.nan_to_num(joints)
+            self._state = np.stack([np.zeros(joints.shape), self._before, self._before])
             return Kinematics(joints, joints - joints)
         elapsed_s = (stamp_ns - last_ns) / SECOND_NS
         advanced = self._advanced(joints, elapsed_s) if self._known is None else None
@@ -66,12 +69,6 @@ class KinematicsFilter:
             return self._advance_known(joints, ~np.isnan(joints[:, 0]), elapsed_s)
         self._before = joints
         return advanced
-
-    def _restart(self, joints: Array) -> None:
-        known = ~np.isnan(joints[:, 0])
-        self._known = None if known.all() else known
-        self._before = np.nan_to_num(joints)
-        self._state = np.stack([np.zeros(joints.shape), self._before, self._before])
 
     def _advanced(self, joints: Array, elapsed_s: float) -> Kinematics | None:
         """Advance the state, and return the next frame's kinematics; None and no change where a joint is missing."""

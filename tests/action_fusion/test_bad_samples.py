@@ -8,30 +8,7 @@ from actum.skeletons import INDEX
 from fused import events_of
 from scenes import Scene, acting_on, action, still
 
-MIRRORED = [-1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
-OF_A_CAMERA = [1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0]
-"""Its last row is a perspective projection's."""
 TOUCH = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.45))
-
-
-@pytest.mark.parametrize(
-    "fields",
-    [
-        {"joints_m": None},
-        {"ego_from_camera": None},
-        {"ego_from_camera": [0.0] * 16},
-        {"ego_from_camera": [2.0**31] * 16},
-        {"ego_from_camera": [1e308] * 16},
-        {"ego_from_camera": MIRRORED},
-        {"ego_from_camera": OF_A_CAMERA},
-    ],
-)
-def test_a_posture_that_is_valid_only_in_name_is_counted(node, fields) -> None:
-    bad = [posture.model_copy(update=fields) for posture in TOUCH.postures(end_s=1.5)]
-    good = TOUCH.postures(start_s=1.5)
-    (event,) = events_of(node, *bad, *good, *TOUCH.sightings(), action("touch"))
-    assert node.counters.rejects == {"bad_posture": len(bad)}
-    assert event.object is not None and event.object.id == 1
 
 
 @pytest.mark.parametrize("joint", [None, [math.nan, 0.0, 0.0], [2.0**31, 0.0, 0.0], [math.inf, -math.inf, 0.0]])

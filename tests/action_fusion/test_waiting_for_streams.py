@@ -194,12 +194,6 @@ def test_an_id_used_again_is_answered_with_its_rejection(node) -> None:
     assert (event.segment_id, event.reason) == ("s1", "segment_id reused")
 
 
-def test_older_and_repeated_stamps_are_counted_and_dropped(node) -> None:
-    events_of(node, PUSH.posture(1.0), PUSH.posture(1.0), PUSH.posture(0.5))
-    events_of(node, PUSH.objects_seen(1.0), PUSH.objects_seen(0.9))
-    assert node.counters.rejects == {"stale_stamp": 3}
-
-
 def test_time_that_goes_back_answers_what_waits_and_forgets_the_past(node) -> None:
     events_of(node, *PUSH.postures(end_s=1.7), *PUSH.sightings(), action("push"))
     (event,) = events_of(node, PUSH.posture(-90.0, session_id="new"))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import msgpack
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 from mcap.writer import Writer
@@ -193,46 +193,10 @@ def test_what_was_written_before_a_crash_is_readable(tmp_path: Path) -> None:
     assert count / 3 < len(stamps) < count
 
 
-@pytest.fixture(scope="module")
-def intact(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    path = tmp_path_factory.mktemp("intact") / "a.mcap"
-    written(path, *(skeleton(i) for i in range(5)), image(6), mark("end", 7))
-    return path
-
-
-@settings(max_examples=150)
-@given(data=st.data())
-def test_a_file_cut_anywhere_is_read_up_to_the_break(intact: Path, data: st.DataObject) -> None:
-    whole = intact.read_bytes()
-    length = data.draw(st.integers(8, len(whole) - 1))
-    path = intact.with_name("cut.mcap")
-    path.write_bytes(whole[:length])
-    messages = list(Recording(intact).messages())
-    cut = Recording(path)
-    assert list(cut.messages()) in ([], messages)
-    assert cut.truncated
-
-
-@settings(max_examples=300)
-@given(data=st.data())
-def test_damage_is_told_or_harmless(intact: Path, data: st.DataObject) -> None:
-    damaged = bytearray(intact.read_bytes())
-    damaged[data.draw(st.integers(0, len(damaged) - 1))] ^= data.draw(st.integers(1, 255))
-    path = intact.with_name("damaged.mcap")
-    path.write_bytes(damaged)
-    messages = list(Recording(intact).messages())
-    try:
-        read = list(Recording(path).messages())
-    except RecordingError as error:
-        assert str(path) in str(error)
-    else:
-        assert all(message in messages for message in read)
-
-
 def test_a_file_that_is_missing_or_no_mcap_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="No such file"):
         Recording(tmp_path / "a.mcap")
-    for content in (b"", b"\x89MCAP", b"PK\x03\x04 something else altogether"):
+    for content in (b"", b"\x89MCAP", b"\x89MCAP1\r\n", b"PK\x03\x04 something else altogether"):
         (tmp_path / "a.mcap").write_bytes(content)
         with pytest.raises(RecordingError, match=r"a\.mcap: the file is not an MCAP file; give a recording"):
             Recording(tmp_path / "a.mcap")

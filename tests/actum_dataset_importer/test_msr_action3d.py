@@ -4,9 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
-from actum.messages import Skeleton
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX, JOINTS
 from actum_dataset_importer.msr_action3d import (
@@ -15,7 +13,8 @@ from actum_dataset_importer.msr_action3d import (
     read_sequence,
     sequence_files,
 )
-from actum_dataset_importer.takes import DatasetError
+from actum_dataset_importer.takes import DatasetError, Take
+from kinect_takes import facing
 
 SOURCE_ROWS = {
     "head": 20,
@@ -38,18 +37,14 @@ SOURCE_ROWS = {
 knee A B, ankle A B, foot A B, head. The actor's right is B."""
 
 
-def write_sequence(path: Path, frames: int, empty: tuple[int, ...] = ()) -> None:
+def sequence(folder: Path, name: str = "a01_s02_e03", frames: int = 3, empty: tuple[int, ...] = ()) -> Path:
     """Joint row r (from 1) of frame i lies at (r, 10 i, 2) with confidence r / 32."""
+    path = folder / f"{name}_skeleton3D.txt"
     with path.open("w") as file:
         for i in range(frames):
             for row in range(1, 21):
                 numbers = (0, 0, 0, 0) if i in empty else (row, 10 * i, 2, row / 32)
                 file.write(" ".join(f"{number:.6f}" for number in numbers) + "\n")
-
-
-def sequence(folder: Path, name: str = "a01_s02_e03", frames: int = 3, empty: tuple[int, ...] = ()) -> Path:
-    path = folder / f"{name}_skeleton3D.txt"
-    write_sequence(path, frames, empty)
     return path
 
 
@@ -123,22 +118,9 @@ def test_the_set_is_found_in_its_folder_or_in_real3d(tmp_path: Path) -> None:
     assert sequence_files(tmp_path) == sequence_files(real3d) == sequence_files(path) == [path]
 
 
-def joints_m(frames: list[Skeleton]) -> NDArray[np.float64]:
-    """Joints of the valid frames, shape (frames, 15, 3), camera frame."""
-    return np.array([frame.agents[0].joints for frame in frames if frame.valid]).reshape(-1, 15, 3)
-
-
-def facing(joints: NDArray[np.float64]) -> float:
-    """Median cosine between the body's forward axis (left x up) and the way from the torso to the camera."""
-    left = joints[:, INDEX["left_hip"]] - joints[:, INDEX["right_hip"]]
-    up = joints[:, INDEX["torso"]] - (joints[:, INDEX["left_hip"]] + joints[:, INDEX["right_hip"]]) / 2
-    forward, to_camera = np.cross(left, up), -joints[:, INDEX["torso"]]
-    norms = np.linalg.norm(forward, axis=1) * np.linalg.norm(to_camera, axis=1)
-    return float(np.median((forward * to_camera).sum(axis=1) / norms))
-
-
-def hand_path_m(joints: NDArray[np.float64], hand: str) -> float:
+def hand_path_m(take: Take, hand: str) -> float:
     """Length of a hand's path as seen from the torso."""
+    joints = np.array([frame.agents[0].joints for frame in take.frames if frame.valid])
     from_torso = joints[:, INDEX[hand]] - joints[:, INDEX["torso"]]
     return float(np.linalg.norm(np.diff(from_torso, axis=0), axis=1).sum())
 
@@ -154,10 +136,10 @@ def test_the_real_set_has_its_known_size_and_faces_the_camera_and_acts_with_the_
     assert {take.marks[0].label for take in takes} == set(CLASSES)
     assert {take.person for take in takes} == {str(person) for person in range(1, 11)}
 
-    bodies = {take.name: joints_m(take.frames) for take in takes if any(frame.valid for frame in take.frames)}
-    assert {take.name for take in takes} - bodies.keys() == {"a13_s09_e02"}
-    assert np.mean([facing(joints) > 0 for joints in bodies.values()]) > 0.99
-    one_armed = [joints for name, joints in bodies.items() if name < "a06"]
+    seen = [take for take in takes if any(frame.valid for frame in take.frames)]
+    assert {take.name for take in takes} - {take.name for take in seen} == {"a13_s09_e02"}
+    assert np.mean([facing(take) > 0 for take in seen]) > 0.99
+    one_armed = [take for take in seen if take.name < "a06"]
     assert len(one_armed) == 133
-    right = [hand_path_m(joints, "right_hand") > hand_path_m(joints, "left_hand") for joints in one_armed]
+    right = [hand_path_m(take, "right_hand") > hand_path_m(take, "left_hand") for take in one_armed]
     assert np.mean(right) > 0.95

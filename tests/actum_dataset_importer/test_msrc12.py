@@ -146,5 +146,4 @@ def test_the_real_set_has_its_known_size_and_faces_the_camera(data: Path) -> Non
     takes = [read_stream(file, name, "kinect0") for file, name in first_of_each.values()]
     assert {mark.label for read in takes for mark in read.marks if mark.label} == set(GESTURES)
     for read in takes:
-        seen = [frame for frame in read.frames if frame.agents]
-        assert facing(Take(read.name, read.person, seen)) > 0.8, read.name
+        assert facing(read) > 0.8, read.name

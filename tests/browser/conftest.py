@@ -11,6 +11,7 @@ import pytest
 import chromium as installed
 from dashboards import Colleague, served
 from lessons import Lesson, lesson
+from live import System, system
 from page_scenes import Scene, maps
 
 Open = Callable[..., Any]
@@ -23,6 +24,12 @@ SMALL = {"viewport": {"width": 960, "height": 600}}
 """Where 3-D is drawn in software, by the pixel."""
 STILL = {"reduced_motion": "reduce"}
 """Films of examples play only where a test has them play: drawn in software, they take half a core."""
+
+
+@pytest.fixture
+def running(tmp_path: Path) -> Iterator[System]:
+    with system(tmp_path) as made:
+        yield made
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ from accessibility import serious_faults
 from actum.messages import Segment
 from actum.node import SECOND_NS
 from live import wait_until
-from page_scenes import Scene, action
+from page_scenes import Scene, action, wait_for_state
 
 pytestmark = pytest.mark.browser
 Open = Callable[..., Any]
@@ -46,12 +46,6 @@ def is_other(view: Any, before: bytes) -> bool:
     """Tell whether more is drawn elsewhere than the edges of what moves by a pixel."""
     then, now = (np.asarray(Picture.open(BytesIO(each)).convert("RGB"), float) for each in (before, view.screenshot()))
     return bool((np.abs(now - then).max(axis=2) > FAINT).mean() > EDGES)
-
-
-def wait_for_state(page: Any, text: str) -> None:
-    page.wait_for_function(
-        "text => document.getElementById('state').textContent.includes(text)", arg=text, timeout=60_000
-    )
 
 
 def test_a_skeleton_moves(scene: Scene, open_in_3d: Open) -> None:

@@ -178,7 +178,7 @@ def test_a_video_goes_on_where_another_job_came_after_the_one_before_unseen(
         room.teacher.jobs[1].news = Ended(RESULT, "")
         room.teacher.tick(1)
     wait_until(lambda: len(room.teacher.jobs) == 3, "the second is imported", 10)
-    assert room.teacher.jobs[2].request.kind == "import"
+    assert room.teacher.jobs[2].arguments.kind == "import"
 
 
 def test_what_a_busy_service_did_not_answer_is_asked_for_again(room: Lesson, open_page: Open) -> None:

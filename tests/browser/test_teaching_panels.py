@@ -312,7 +312,7 @@ def test_a_model_is_trained_put_into_use_compared_undone_and_deleted(room: Lesso
     models.get_by_label("Also learn how postures go on").check()
     press(models, "Train")
     wait_until(lambda: bool(room.teacher.jobs), "it is trained")
-    assert room.teacher.jobs[0].request.fields["continued"]
+    assert room.teacher.jobs[0].arguments.continued
     room.teacher.jobs[0].news = Progressing("training the maps", 0.25)
     says(models, "training", "Training: training the maps, 25 %")
     room.end_job(trained())
@@ -356,7 +356,7 @@ def test_what_was_held_back_is_corrected_by_one_click_each_and_the_model_made_an
     press(models, "Update the model (2 corrections)")
     wait_until(lambda: len(room.teacher.jobs) == 2, "it is updated")
     [model] = room.teacher.ask("list")["models"]
-    assert room.teacher.jobs[-1].request.fields["model"].endswith(f"{model['id']}.npz")
+    assert room.teacher.jobs[-1].arguments.model.name == f"{model['id']}.npz"
     room.end_job(trained())
     says(models, "explanation", "The new model is in use within two seconds.")
 

@@ -3,13 +3,13 @@
 import re
 import shutil
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from live import System, free_endpoint, system, wait_until
+from live import System, free_endpoint, wait_until
 
 pytestmark = [pytest.mark.browser, pytest.mark.system, pytest.mark.long]
 Open = Callable[..., Any]
@@ -24,12 +24,6 @@ DONE_MS = 90_000
 """The simulated person takes half a minute for five repetitions."""
 CLIPS = {"wave": 1, "clap": 4, "bow": 9}
 """Actions of the recorded clips, and their numbers in the files' names."""
-
-
-@pytest.fixture
-def running(tmp_path: Path) -> Iterator[System]:
-    with system(tmp_path) as made:
-        yield made
 
 
 def start(running: System, open_page: Open, *sensor: str) -> Any:

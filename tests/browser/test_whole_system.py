@@ -1,26 +1,14 @@
 """The page of live processes: it outlives their router, and its own service."""
 
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
-from live import System, free_endpoint, system, wait_until
+from live import System, free_endpoint, wait_until
+from page_scenes import wait_for_state
 
 pytestmark = [pytest.mark.browser, pytest.mark.system, pytest.mark.long]
-
-
-@pytest.fixture
-def running(tmp_path: Path) -> Iterator[System]:
-    with system(tmp_path) as made:
-        yield made
-
-
-def wait_for_state(page: Any, text: str) -> None:
-    page.wait_for_function(
-        "text => document.getElementById('state').textContent.includes(text)", arg=text, timeout=60_000
-    )
 
 
 def test_it_waits_for_router_and_sensor_and_comes_back_after_each(

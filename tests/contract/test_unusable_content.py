@@ -19,6 +19,9 @@ BEFORE_NS = NOON_NS - FRAME_NS
 JPEG_OF_30000 = bytes.fromhex(
     "ffd8 ffe0 0010 4a46494600 0101 00 0001 0001 00 00 ffc0 000b 08 7530 7530 01 011100 ffda 0008 01 0100 003f00"
 )
+JPEG_OF_112 = JPEG_OF_30000.replace(b"\x75\x30", b"\x00\x70")
+"""The headers of the photograph's size, without its pixels."""
+MIRRORED = [-1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0]
 
 
 def changed(message: Message, **fields: Any) -> Message:
@@ -71,6 +74,14 @@ def bad_skeletons() -> dict[str, tuple[str, Message]]:
         "one hip, one shoulder": ("missing_joint", skeleton_with(without(standing, "left_hip", "right_shoulder"))),
         "NaN elbow, no hand": ("not_finite", skeleton_with(without(odd_elbow, "left_hand"))),
         "all joints in one place": ("coincident_joints", skeleton_with([[0.0, 0.0, 2.0]] * 15)),
+        "a hand at its elbow": (
+            "coincident_joints",
+            skeleton_with(moved(standing, "left_hand", standing[INDEX["left_elbow"]])),
+        ),
+        "both hips in one place": (
+            "coincident_joints",
+            skeleton_with(moved(standing, "left_hip", standing[INDEX["right_hip"]])),
+        ),
         "an arm of four metres": ("absurd_bone", skeleton_with(moved(standing, "left_hand", [0.3, 0.1, 6.0]))),
         "one agent twice": ("repeated_agent", skeleton_with(standing, times=2)),
         "invalid": ("invalid_skeleton", changed(first(PREPROCESSOR, Skeleton), valid=False, reason="r" * 1000)),
@@ -112,8 +123,16 @@ def bad_images() -> dict[str, tuple[str, Message]]:
         "K of zeros": {"K": [0.0] * 9},
         "K of 2**31": {"K": [2.0**31] * 9},
         "K with columns for rows": {"K": [100.0, 0.0, 0.0, 0.0, 100.0, 0.0, 56.0, 56.0, 1.0]},
+        "K with a negative focal length": {"K": [100.0, 0.0, 56.0, 0.0, -100.0, 56.0, 0.0, 0.0, 1.0]},
         "distortion of 1e308": {"distortion": [1e308] * 5},
+        "distortion of 2**31": {"distortion": [2.0**31, 0.0, 0.0, 0.0]},
+        "distortion of 3 numbers": {"distortion": [0.1] * 3},
         "distortion of 70 numbers": {"distortion": [0.0] * 70},
+        "extrinsics of zeros": {"skeleton_from_image": [0.0] * 16},
+        "extrinsics out of the world": {
+            "skeleton_from_image": [1.0, 0, 0, 1.7e308, 0, 1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0]
+        },
+        "extrinsics that mirror": {"skeleton_from_image": MIRRORED},
         "extrinsics that scale": {"skeleton_from_image": geometry.flat(np.diag([2.0, 2.0, 2.0, 1.0]))},
     }
     sizes = {"width": 30_000, "height": 30_000}
@@ -124,7 +143,12 @@ def bad_images() -> dict[str, tuple[str, Message]]:
         "30,000 × 30,000 throughout": ("image_too_large", photograph(BEFORE_NS, data=JPEG_OF_30000, **sizes)),
         "raw, said to be 30,000 × 30,000": ("image_too_large", photograph(BEFORE_NS, format="bgr8", **sizes)),
         "raw, one byte short": ("image_size_mismatch", photograph(BEFORE_NS, format="bgr8", data=bytes(37631))),
+        "raw, one byte long": ("image_size_mismatch", photograph(BEFORE_NS, format="bgr8", data=bytes(37633))),
+        "black": ("black_image", photograph(BEFORE_NS, format="bgr8", data=bytes(37632))),
         "a JPEG of another size": ("image_size_mismatch", photograph(BEFORE_NS, width=113)),
+        "a JPEG without pixels": ("undecodable_image", photograph(BEFORE_NS, data=JPEG_OF_112)),
+        "a JPEG without a size": ("undecodable_image", photograph(BEFORE_NS, data=b"\xff\xd8\xff\xe0\x00\x04ab")),
+        "a PNG": ("undecodable_image", photograph(BEFORE_NS, data=b"\x89PNG\r\n\x1a\n" + bytes(100))),
         "half a JPEG's header": ("undecodable_image", photograph(BEFORE_NS, data=JPEG_OF_30000[:12])),
         "no data": ("undecodable_image", photograph(BEFORE_NS, data=b"")),
     }  # fmt: skip
@@ -136,12 +160,20 @@ def bad_input_to_fusion() -> dict[str, tuple[str, Message]]:
         f"{name} hand": ("bad_joint", posture_with(FUSION, joints_m=moved(joints, "right_hand", joint)))
         for name, joint in BAD_JOINTS.items()
     }
+    frames = {
+        **{f"of {number:g}": [number] * 16 for number in (0.0, 2.0**31, 1e308)},
+        "that mirrors": MIRRORED,
+        "of a projection": [1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 0, 1.0, 0, 0, 0, 1.0, 0],
+    }
     action = first(FUSION, Action)
     far = [found.model_dump() | {"position_m": [2.0**31, 0.0, 0.0]} for found in first(FUSION, Objects).objects]
     return bad | {
         "valid without joints": ("bad_posture", posture_with(FUSION, joints_m=None)),
         "valid without a frame": ("bad_posture", posture_with(FUSION, ego_from_camera=None)),
-        "a frame of 1e308": ("bad_posture", posture_with(FUSION, ego_from_camera=[1e308] * 16)),
+        **{
+            f"a frame {name}": ("bad_posture", posture_with(FUSION, ego_from_camera=frame))
+            for name, frame in frames.items()
+        },
         "objects 2**31 m away": ("bad_object", changed(first(FUSION, Objects), objects=far)),
         "final without label": ("bad_action", changed(action, action=None, segment_id="odd")),
         "final without end": ("bad_action", changed(action, end_ns=None, segment_id="odd")),
@@ -178,6 +210,10 @@ def test_no_answer_passes_for_a_good_one(case: Case, kind: str, message: Message
     outputs = Wire(case.build()).send(message)
     assert kind == "repeated_agent" or not any(output.valid for output in outputs)
     assert len(outputs) == (1 if isinstance(message, Skeleton | Image | Segment | Action) else 0)
+    for output in outputs:
+        if message.valid and not output.valid and isinstance(output, Posture | Objects):
+            assert kind in (output.reason or "")
+            assert not (output.joints if isinstance(output, Posture) else output.objects)
 
 
 @every_node

@@ -58,13 +58,6 @@ def test_a_new_session_forgets_the_old_objects(tracker, cup, nothing) -> None:
     assert (answer.objects, answer.session_id) == ([], "b")
 
 
-def test_older_and_repeated_stamps_are_counted_and_dropped(tracker, cup) -> None:
-    list(tracker.handle(at(cup, 10.0)))
-    assert list(tracker.handle(at(cup, 10.0))) == []
-    assert list(tracker.handle(at(cup, 9.0))) == []
-    assert tracker.counters.rejects == {"stale_stamp": 2}
-
-
 def test_an_invalid_image_is_passed_on_as_invalid_objects(tracker, cup) -> None:
     (answer,) = tracker.handle(at(cup, 10.0, valid=False, reason="lens covered"))
     assert (answer.valid, answer.reason, answer.objects) == (False, "lens covered", [])

@@ -90,14 +90,10 @@ def test_a_hand_may_turn_what_it_takes(seen) -> None:
 def test_it_is_trusted_less_than_what_is_seen_and_is_seen_again_at_once(seen) -> None:
     _, place = carried((0.05, -0.1, 1.5))
     listed = seen(lambda t: place(t) if COVERED_S <= t < 1.5 else None, 1.6, 15, place)
-    (before,), (covered,), (again,) = listed[0.0], listed[21 / 15], last_of(listed)
+    (before,), (covered,), (again,) = listed[0.0], listed[21 / 15], listed[max(listed)]
     assert covered.followed and 0 < covered.confidence < before.confidence
     assert again.seen and not again.followed
     assert np.linalg.norm(np.subtract(again.position_m, (0.05, -0.1, 1.5))) < 0.01
-
-
-def last_of(listed):
-    return listed[max(listed)]
 
 
 def test_a_hand_that_passes_takes_nothing_along(seen) -> None:

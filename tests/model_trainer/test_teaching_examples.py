@@ -29,12 +29,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return teacher.folder
 
 
-@pytest.fixture
-def teacher(taught: Path, tmp_path: Path) -> Teacher:
-    shutil.copytree(taught, tmp_path / "copy")
-    return Teacher(tmp_path / "copy")
-
-
 def acting_hand(joints: np.ndarray) -> str:
     """Return the hand that rises by more than 0.5 m while the other one stays."""
     risen = {hand: np.ptp(joints[:, INDEX[f"{hand}_hand"], 1]) for hand in ("left", "right")}

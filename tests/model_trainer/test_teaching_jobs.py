@@ -18,7 +18,8 @@ from actum.recorder import is_being_written
 from actum_model_trainer import sampling
 from live import wait_until
 from model_trainer import job
-from model_trainer.job_process import CLAIM, Ended, JobProcess, JobRequest, Progressing
+from model_trainer.job import Arguments
+from model_trainer.job_process import CLAIM, Ended, JobProcess, Progressing
 from model_trainer.job_store import JobStore
 from performers import TINY
 from recognisers import tiny_model
@@ -37,12 +38,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return teacher.folder
 
 
-@pytest.fixture
-def teacher(taught: Path, tmp_path: Path) -> Teacher:
-    shutil.copytree(taught, tmp_path / "copy")
-    return Teacher(tmp_path / "copy")
-
-
 Finish = Callable[[], dict[str, Any]]
 
 
@@ -51,9 +46,7 @@ def finish(teacher: Teacher, capsys: pytest.CaptureFixture[str], monkeypatch: py
     """Do the newest job in this process, with a small preset; return what became of it."""
 
     def done_here() -> dict[str, Any]:
-        asked = teacher.jobs[-1].request
-        arguments = json.dumps({"kind": asked.kind, "folder": str(asked.folder), **asked.fields})
-        monkeypatch.setattr(sys, "argv", ["job", arguments])
+        monkeypatch.setattr(sys, "argv", ["job", teacher.jobs[-1].arguments.model_dump_json()])
         monkeypatch.setattr(job, "PRESETS", {"pyramid": TINY, TINY.name: TINY})
         job.main()
         lines = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
@@ -232,8 +225,8 @@ def wait_for_end(running: JobProcess) -> Ended:
 @pytest.mark.system
 @pytest.mark.parametrize("end", [lambda running: running.end(), lambda running: running._process.kill()])
 def test_a_process_that_is_ended_says_how(teacher: Teacher, tmp_path: Path, end: Callable[[JobProcess], None]) -> None:
-    fields = {"takes": str(teacher.folder / "sets/kitchen"), "preset": "pyramid", "seed": 0}
-    running = JobProcess(JobRequest("train", tmp_path, fields))
+    takes = teacher.folder / "sets/kitchen"
+    running = JobProcess(Arguments(kind="train", folder=tmp_path, takes=takes, preset="pyramid"))
     wait_until(lambda: isinstance(running.look(), Progressing), "it has begun", 60)
     assert is_being_written(tmp_path / CLAIM)
     end(running)
@@ -244,7 +237,7 @@ def test_a_process_that_is_ended_says_how(teacher: Teacher, tmp_path: Path, end:
 
 @pytest.mark.system
 def test_a_process_that_fails_is_told_with_its_last_words(tmp_path: Path) -> None:
-    running = JobProcess(JobRequest("no such kind", tmp_path))
+    running = JobProcess(Arguments(kind="no such kind", folder=tmp_path))
     ended = wait_for_end(running)
     assert ended.result is None
     assert "its process ended unexpectedly (exit code 1)" in ended.error and "KeyError: 'no such kind'" in ended.error
@@ -254,7 +247,7 @@ def test_a_process_that_fails_is_told_with_its_last_words(tmp_path: Path) -> Non
 def test_a_process_whose_folder_has_vanished_is_told(tmp_path: Path) -> None:
     folder = tmp_path / "job-1.work"
     folder.mkdir()
-    running = JobProcess(JobRequest("no such kind", folder))
+    running = JobProcess(Arguments(kind="no such kind", folder=folder))
     shutil.rmtree(folder)
     assert "what it printed cannot be read (No such file" in wait_for_end(running).error
 
@@ -271,7 +264,7 @@ def test_what_a_library_prints_is_no_news(line: bytes, monkeypatch: pytest.Monke
             return None
 
     monkeypatch.setattr("subprocess.Popen", Printing)
-    running = JobProcess(JobRequest("train", tmp_path))
+    running = JobProcess(Arguments(kind="train", folder=tmp_path))
     running._reading.join()
     assert running.look() == Progressing("training", 0.5)
 

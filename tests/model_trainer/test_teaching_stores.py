@@ -39,12 +39,6 @@ def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return teacher.folder
 
 
-@pytest.fixture
-def teacher(taught: Path, tmp_path: Path) -> Teacher:
-    shutil.copytree(taught, tmp_path / "copy")
-    return Teacher(tmp_path / "copy")
-
-
 def send(teacher: Teacher, name: str = "clip.mp4", data: bytes = b"video", offset: int = 0, last: bool = True) -> None:
     teacher.ask("upload", name=name, offset=offset, data=base64.b64encode(data).decode(), last=last)
 
@@ -329,14 +323,14 @@ def test_a_take_that_cannot_be_begun_leaves_nothing_in_progress(
 def test_a_file_of_the_same_name_sent_during_an_import_is_another_one(teacher: Teacher) -> None:
     send(teacher, data=b"first")
     teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="nod")
-    video = Path(teacher.jobs[-1].request.fields["video"])
+    video = teacher.jobs[-1].arguments.video
     send(teacher, data=b"second")
     assert video.read_bytes() == b"first"
     teacher.jobs[-1].news = Ended(None, "no video")
     teacher.tick()
     assert not video.exists()
     teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="nod")
-    assert Path(teacher.jobs[-1].request.fields["video"]).read_bytes() == b"second"
+    assert teacher.jobs[-1].arguments.video.read_bytes() == b"second"
 
 
 def test_a_video_whose_job_cannot_be_started_can_be_imported_again(taught: Path, tmp_path: Path) -> None:
@@ -416,7 +410,7 @@ def test_a_folder_of_models_that_nobody_may_enter_ends_nothing(
 def test_a_job_that_another_trainer_of_the_folder_runs_is_left_to_it(teacher: Teacher) -> None:
     send(teacher)
     job = teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="nod")["id"]
-    video = Path(teacher.jobs[-1].request.fields["video"])
+    video = teacher.jobs[-1].arguments.video
     with (teacher.folder / f"jobs/{job}.work/.running").open("wb") as claimed:
         claim(claimed)
         other = Teacher(teacher.folder)

@@ -115,15 +115,11 @@ def test_every_kind_of_doing_occurs() -> None:
 def test_short_pauses_have_one_doing_at_most_and_make_a_scene_half_as_long(busy: list[SceneState]) -> None:
     programme = balanced_programme(3, 4)
     states = list(Scene(programme, 1, 4, everyday=Everyday(pauses="short")).states())
-    pauses = split_at_actions(states)
+    pauses = [list(pause) for acts, pause in groupby(states, key=lambda s: s.segment is not None) if not acts]
 
     assert len(states) < 0.6 * len(busy)
     assert max(len(set(doings(pause))) for pause in pauses) == 1
     assert any(not doings(pause) for pause in pauses)
-
-
-def split_at_actions(states: list[SceneState]) -> list[list[SceneState]]:
-    return [list(pause) for acts, pause in groupby(states, key=lambda s: s.segment is not None) if not acts]
 
 
 def doings(states: list[SceneState]) -> list[str]:

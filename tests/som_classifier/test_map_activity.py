@@ -57,10 +57,6 @@ def path_of(numbers: list[int]) -> np.ndarray:
     return np.stack(np.divmod(unique, 30), axis=1).astype(np.float64)
 
 
-def polyline_length(path: np.ndarray) -> float:
-    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
-
-
 def position_along(path: np.ndarray, point: np.ndarray, after: float) -> float:
     """The smallest arc length, not before `after`, at which the polyline passes through a point."""
     reached = 0.0
@@ -131,7 +127,7 @@ def test_the_ends_are_kept_exactly(numbers: list[int], count: int) -> None:
 @given(cells, points)
 def test_points_stand_at_equal_arc_length_along_the_path(numbers: list[int], count: int) -> None:
     path = path_of(numbers)
-    step = polyline_length(path) / (count - 1)
+    step = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum()) / (count - 1)
     if len(path) == 1:
         return
     for k, point in enumerate(resampled(path, count)):

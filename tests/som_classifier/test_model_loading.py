@@ -7,8 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from actum import __version__
 from actum.som import Som
@@ -314,24 +312,6 @@ def test_what_is_no_version_is_not_repeated(tmp_path: Path, version: object) -> 
 @each_kind
 def test_metadata_of_later_versions_are_ignored(tmp_path: Path, kind: str) -> None:
     assert load_model(with_metadata(saved(tmp_path, kind), later="field")).labels == ["pull", "push"]
-
-
-@each_kind
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(data=st.data())
-def test_a_cut_or_altered_file_is_refused_or_whole(tmp_path: Path, kind: str, data: st.DataObject) -> None:
-    path = saved(tmp_path, kind)
-    content = bytearray(path.read_bytes())
-    if data.draw(st.booleans()):
-        del content[data.draw(st.integers(0, len(content) - 1)) :]
-    else:
-        content[data.draw(st.integers(0, len(content) - 1))] ^= data.draw(st.integers(1, 255))
-    path.write_bytes(content)
-    try:
-        loaded = load_model(path)
-    except ModelError:
-        return
-    assert loaded.id == model_of(kind).id
 
 
 @each_kind

@@ -20,13 +20,6 @@ SERVICE = Info(
 
 
 @pytest.fixture
-def client(running: System) -> Iterator[Client]:
-    running.start_router()
-    with running.client() as made:
-        yield made
-
-
-@pytest.fixture
 def beside(running: System, client: Client) -> Iterator[zenoh.Session]:
     """Another program on the same router."""
     with zenoh.open(client_config(running.settings)) as session:

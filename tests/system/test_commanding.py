@@ -1,7 +1,6 @@
 """Commands over Zenoh: asked by our client, and by a program that knows nothing but JSON."""
 
 import json
-from collections.abc import Iterator
 
 import pytest
 import zenoh
@@ -14,13 +13,6 @@ from actum.runtime.session import client_config
 from live import System, collect, wait_until
 
 pytestmark = pytest.mark.system
-
-
-@pytest.fixture
-def client(running: System) -> Iterator[Client]:
-    running.start_router()
-    with running.client() as made:
-        yield made
 
 
 def asked(session: zenoh.Session, key: str, payload: str | None = None) -> tuple[list[dict], list[dict]]:

@@ -44,11 +44,6 @@ def events_of(client: Client) -> Listening:
     return client.listen(keys.pattern(keys.EVENT, client.sensor))
 
 
-def kept_events(client: Client) -> list[Event]:
-    """What a late subscriber is given."""
-    return collect(client.listen_back(keys.pattern(keys.EVENT, client.sensor), LONG_S), Event, bool)
-
-
 @contextmanager
 def killed(running: System, service: Running, client: Client) -> Iterator[None]:
     """Kill a service without warning; it is away within the context, and nobody says any more that it is alive."""
@@ -150,7 +145,7 @@ def test_an_event_written_down_and_not_put_reaches_those_who_wait_for_it(
     with running.client() as client:
         running.wait_for_services(client, "action_fusion")
         put_all(client, SCENE)
-        kept_events(client)
+        collect(client.listen_back(keys.pattern(keys.EVENT, client.sensor), LONG_S), Event, bool)
         with killed(running, fusion, client):
             shutil.copytree(state[1], tmp_path / "copy")
         with running.client() as unheard:

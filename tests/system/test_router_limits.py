@@ -2,8 +2,6 @@
 
 import json
 import time
-from collections.abc import Iterator
-from contextlib import closing
 
 import pytest
 import zenoh
@@ -12,24 +10,12 @@ from actum import keys
 from actum.messages import Message
 from actum.runtime.session import client_config, secret_config
 from actum_deployer.router_file import IMAGES_HZ
-from deployments import Deployed, deployed
+from deployments import Deployed
 from empty_messages import image, skeleton
 from live import PATIENCE_S, collect
 from third_session import Third, passed_on
 
 pytestmark = pytest.mark.system
-
-
-@pytest.fixture(scope="module")
-def deployment(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Deployed]:
-    with deployed(tmp_path_factory.mktemp("deployment"), passwords=True) as made:
-        yield made
-
-
-@pytest.fixture
-def third(deployment: Deployed) -> Iterator[Third]:
-    with closing(Third(deployment)) as made:
-        yield made
 
 
 def test_a_message_that_is_too_large_is_not_passed_on(deployment: Deployed, third: Third) -> None:

@@ -1,8 +1,6 @@
 """Routers of a deployment let in whom they know, and each may put, read and ask what its role says; a third tells."""
 
 import json
-from collections.abc import Iterator
-from contextlib import closing
 from datetime import timedelta
 from pathlib import Path
 
@@ -29,12 +27,6 @@ REFUSED_S = 1.0
 """How long who is not let in tries."""
 
 
-@pytest.fixture(scope="module")
-def deployment(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Deployed]:
-    with deployed(tmp_path_factory.mktemp("deployment"), passwords=True) as made:
-        yield made
-
-
 def authority_of(deployment: Deployed) -> Signed:
     folder = deployment.root / "authority"
     return Signed.load((folder / "ca.pem").read_bytes(), (folder / "key.pem").read_bytes())
@@ -48,12 +40,6 @@ def with_other_certificate(deployment: Deployed, folder: Path, signed: Signed) -
     (folder / CERTIFICATE).write_bytes(signed.certificate_pem)
     (folder / KEY).write_bytes(signed.key_pem)
     return deployment.settings("viewer", "compute").model_copy(update={"credentials": folder})
-
-
-@pytest.fixture
-def third(deployment: Deployed) -> Iterator[Third]:
-    with closing(Third(deployment)) as made:
-        yield made
 
 
 def assert_refused(settings: ServiceSettings, third: Third) -> None:

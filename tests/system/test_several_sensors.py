@@ -67,11 +67,6 @@ def test_a_sensor_that_another_serves_is_refused_and_a_successor_takes_over_its_
         assert answered(left) == [frame.stamp_ns for frame in frames("left")]
 
 
-def processes_that_serve(client: Client) -> dict[str, set[str]]:
-    """The services of a sensor that describe themselves, each with its instances."""
-    return {info.service: {info.instance} for info in client.infos()}
-
-
 def test_up_recognises_what_is_done_before_each_sensor_with_one_process_of_each_service(running: System) -> None:
     running.variables["ACTUM_IMAGE_HZ"] = FEW_IMAGES_HZ
     up = running.start("actum_command", "up", "--sensors", ",".join(SENSORS))
@@ -82,7 +77,7 @@ def test_up_recognises_what_is_done_before_each_sensor_with_one_process_of_each_
             events = client.listen(keys.pattern(keys.EVENT, client.sensor))
             found = collect(events, Event, lambda found: any(event.valid for event in found))
             assert {event.sensor for event in found} == {client.sensor}
-            served.append(processes_that_serve(client))
+            served.append({info.service: {info.instance} for info in client.infos()})
         for service in (*SERVICES, "model_trainer"):
             assert served[0][service] == served[1][service], service
         for service in ("sensor_gateway", "web_dashboard"):

@@ -88,16 +88,11 @@ def _draw_empty_place(
         aside, above, ahead = (draw_uniform(rng, one) for one in (ASIDE_RANGE_M, ABOVE_RANGE_M, AHEAD_RANGE_M))
         x, z = layout.pelvis_m[0] + actor.side * aside, layout.pelvis_m[2] - ahead
         place = np.array([x, parameters.table_y_m - above, z])
-        nearest_m = _nearest_m(place, displacement_m, layout.positions_m)
+        path = place + np.linspace(0, 1, 8)[:, None] * displacement_m
+        nearest_m = float(np.linalg.norm(path[:, None] - layout.positions_m, axis=2).min())
         is_clear = clear_range_m[0] <= nearest_m <= clear_range_m[1]
         if is_clear and place[1] + displacement_m[1] <= lowest_y_m:
             return place
     raise ValueError(
         "there is no empty space for a pantomime (an action without an object): move the objects closer together"
     )
-
-
-def _nearest_m(place: Array, displacement_m: Array, positions_m: Array) -> float:
-    """Return the palm's smallest distance from any object's middle between the imagined grasp and release."""
-    path = place + np.linspace(0, 1, 8)[:, None] * displacement_m
-    return float(np.linalg.norm(path[:, None] - positions_m, axis=2).min())

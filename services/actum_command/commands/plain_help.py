@@ -25,7 +25,9 @@ class _Plain:
         params = super().get_params(ctx)  # type: ignore[misc]
         for param in params:
             if hasattr(param, "display_type"):  # older versions of Typer show such placeholders themselves
-                word = _word(type(param).display_type(param, ctx))
+                type_text = type(param).display_type(param, ctx)  # `<str>`, `<int range>` or `<list[Path]>`, or choices
+                kind = type_text.strip("<>").removeprefix("list[").removesuffix("]").removesuffix(" range")
+                word = WORDS.get(kind.lower(), type_text)
                 param.display_type = lambda _, word=word: word
         return params
 
@@ -81,9 +83,3 @@ class PlainTyper(typer.Typer):
     def command(self, name: str | None = None, **options: Any) -> Callable[[F], F]:
         """Declare a command as Typer does."""
         return super().command(name, **{"cls": PlainCommand} | options)
-
-
-def _word(type_text: str) -> str:
-    """Return the placeholder for `<str>`, `<int range>` or `<list[Path]>`; a list of choices stays."""
-    kind = type_text.strip("<>").removeprefix("list[").removesuffix("]").removesuffix(" range")
-    return WORDS.get(kind.lower(), type_text)

@@ -33,10 +33,6 @@ class Published:
     size: int
     sha256: str
 
-    def is_at(self, path: Path) -> bool:
-        """Tell whether the file at a path has this one's digest."""
-        return path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == self.sha256
-
 
 POSE_MODEL = Published(
     url="https://storage.googleapis.com/mediapipe-models/pose_landmarker/pose_landmarker_full/float16/1/"
@@ -85,7 +81,7 @@ def fetch_command(
         refuse_ending(output, ".task")
     path = output or default_pose_model()
     published = replace(POSE_MODEL, url=url)
-    if published.is_at(path):
+    if path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() == published.sha256:
         say(f"the pose model is already at {path}")
         return
     columns = TextColumn("fetching"), BarColumn(), DownloadColumn(), TransferSpeedColumn()

@@ -190,8 +190,7 @@ def run(here: ServiceSettings, programs: list[Program], model: ModelInUse) -> No
 
 def supervise(supervisor: Supervisor, programs: list[Program], stop: threading.Event, reminder: Reminder) -> None:
     """Keep programs running until stopped; fail where one cannot be used as it is set."""
-    for program in programs:
-        supervisor.start(program)
+    supervisor.start(*programs)
     with failing_on(UnusableError):
         while not stop.wait(CHECK_S):
             for line in (*supervisor.restart_ended(), *reminder.lines(time.monotonic())):

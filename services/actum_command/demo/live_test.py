@@ -88,8 +88,7 @@ class LiveTest:
             RouterUnreachableError, SettingsError, UnusableError: the processes cannot run as they are set.
         """
         with Supervisor(self._log) as supervisor:
-            for program in (processes.router(self._here), *programs):
-                supervisor.start(program)
+            supervisor.start(processes.router(self._here), *programs)
             with Client(self._here, READY_S) as client:
                 self._wait_until_ready(client, listened)
                 if processes.PAGE in {program.name for program in programs}:

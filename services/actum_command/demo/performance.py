@@ -54,7 +54,11 @@ class Performance:
         """Receive a message; return what is told by it, if it is a valid event."""
         match message:
             case Skeleton():
-                self._see(message)
+                self.newest_ns = message.stamp_ns
+                if self._first_ns is None:
+                    self._first_ns = message.stamp_ns
+                if message.agents:
+                    self._presence.see(AGENT, message.stamp_ns)
             case TruthMessage(kind="start"):
                 self._starts[message.segment_id] = message
             case TruthMessage(kind="end"):
@@ -109,13 +113,6 @@ class Performance:
     def _span(self, doing: Doing) -> Stretch:
         first_ns = self._first_ns or 0
         return Stretch(self.person, AGENT, first_ns + doing.start_ns, first_ns + doing.end_ns)
-
-    def _see(self, skeleton: Skeleton) -> None:
-        self.newest_ns = skeleton.stamp_ns
-        if self._first_ns is None:
-            self._first_ns = skeleton.stamp_ns
-        if skeleton.agents:
-            self._presence.see(AGENT, skeleton.stamp_ns)
 
     def _tell(self, event: Event) -> Detection | None:
         self._told.add(event.segment_id)

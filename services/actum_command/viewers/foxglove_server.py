@@ -129,7 +129,11 @@ class FoxgloveServer:
         await socket.accept(SUBPROTOCOL)
         wake, loop = asyncio.Event(), asyncio.get_running_loop()
         client = Client(Mailbox(lambda: loop.call_soon_threadsafe(wake.set)))
-        self._join(client)
+        server = {"op": "serverInfo", "name": "actum", "capabilities": [], "sessionId": self._session}
+        with self._lock:
+            first = [json.dumps(server), _advertised(dict(enumerate(self._channels, 1)))]
+            client.mailbox.put(Envelope("first", text, queued=True) for text in first)
+            self._clients.append(client)
         sending = asyncio.create_task(_send(socket, client.mailbox, wake))
         try:
             await self._receive(socket, client)
@@ -138,13 +142,6 @@ class FoxgloveServer:
                 self._clients.remove(client)
                 self._left_out += client.mailbox.left_out
             sending.cancel()
-
-    def _join(self, client: Client) -> None:
-        server = {"op": "serverInfo", "name": "actum", "capabilities": [], "sessionId": self._session}
-        with self._lock:
-            first = [json.dumps(server), _advertised(dict(enumerate(self._channels, 1)))]
-            client.mailbox.put(Envelope("first", text, queued=True) for text in first)
-            self._clients.append(client)
 
     async def _receive(self, socket: WebSocket, client: Client) -> None:
         """Take requests until the client goes, or says what is none."""

@@ -23,7 +23,9 @@ def likeness_of(course: Course, movement: Movement, bursts: Indices) -> Array:
     Each joint counts by the share of its variance that is movement rather than noise. A burst's likeness to itself is
     that to the one most like it that does not overlap it.
     """
-    variances = _variances(course, movement)
+    weights = movement.moving + 1e-9  # rests of any length change nothing
+    middle = np.average(course.postures, axis=0, weights=weights)
+    variances: Array = np.average(((course.postures - middle) ** 2).sum(axis=2), axis=0, weights=weights)
     moved = np.maximum(variances - course.noise_m**2, 0)
     trust = moved / (moved + course.noise_m**2 + 1e-12)
     ways = _ways(course, course.postures * np.sqrt(trust)[:, None], bursts)
@@ -35,14 +37,6 @@ def likeness_of(course: Course, movement: Movement, bursts: Indices) -> Array:
     follows = np.greater_equal.outer(bursts[:, 0], bursts[:, 1])
     np.fill_diagonal(likeness, np.where(follows | follows.T, likeness, 0).max(axis=1))
     return likeness
-
-
-def _variances(course: Course, movement: Movement) -> Array:
-    """Return the variance of each joint (15,) while the person moves, m²: rests of any length change nothing."""
-    weights = movement.moving + 1e-9
-    middle = np.average(course.postures, axis=0, weights=weights)
-    variances: Array = np.average(((course.postures - middle) ** 2).sum(axis=2), axis=0, weights=weights)
-    return variances
 
 
 def _ways(course: Course, postures: Array, bursts: Indices) -> Array:

@@ -75,7 +75,9 @@ class SharingService:
         """Stand by until stopped, and serve the sensor at each turn."""
         place = SharedPlace(session, self._settings, self.name, lambda: self._service.is_busy)
         health_file = HealthFile(self._settings.health_file)
-        listening = self._listen(session)
+        lately = Reach(RESUMED_S, RESUMED_S, depth=None)
+        listening = Inbox(session, () if self._answers is None else (self._answers,), self._settings.sensor, lately)
+        listening.start(self._keep)
         place.join()
         try:
             while not (wait_for(stop, LOOK_S) or self.failed):
@@ -113,13 +115,6 @@ class SharingService:
         resumption = Resumption(node, self._heard, node.counters) if isinstance(node, Remembering) else None
         self._service = NodeService(node, self._settings, resumption)
         self._service.is_healthy_beside = self.is_healthy_beside
-
-    def _listen(self, session: zenoh.Session) -> Inbox:
-        """Keep the answers that any process has put lately and will put; of a service without answers, none."""
-        lately = Reach(RESUMED_S, RESUMED_S, depth=None)
-        inbox = Inbox(session, () if self._answers is None else (self._answers,), self._settings.sensor, lately)
-        inbox.start(self._keep)
-        return inbox
 
     def _keep(self, sample: zenoh.Sample) -> None:
         """Keep an answer; a partial action is none, and what cannot be decoded the serving process counts."""

@@ -105,17 +105,13 @@ class RecoveringSubscriber:
     def _next_earlier(self) -> zenoh.Sample | None:
         """Return the next sample of the past, which the first call awaits; None after the last, or once undeclared."""
         if self._kept is not None:
-            self._take(self._kept)
+            self._earlier.extend(self._kept.samples())
+            for sample in self._earlier:
+                if (info := sample.source_info) is not None:
+                    source = _source(info)
+                    self._newest[source] = max(info.source_sn, self._newest.get(source, 0))
             self._kept = None
         return self._earlier.popleft() if self._earlier and not self._is_undeclared else None
-
-    def _take(self, kept: Kept) -> None:
-        """Take what was put before this subscriber, and note the newest number of each publisher."""
-        self._earlier.extend(kept.samples())
-        for sample in self._earlier:
-            if (info := sample.source_info) is not None:
-                source = _source(info)
-                self._newest[source] = max(info.source_sn, self._newest.get(source, 0))
 
     def _is_new(self, sample: zenoh.Sample) -> bool:
         """Tell whether a sample of Zenoh's subscriber is none of the past. A publisher's numbers rise."""

@@ -52,15 +52,11 @@ class Together:
             rows: (n, sum of the maps' dims), the inputs of all maps one after the other. None may be missing (NaN):
                 it would spread to all maps.
         """
-        excess2s = self._products((rows - self.centre).astype(self._dtype, copy=False))
+        centred = (rows - self.centre).astype(self._dtype, copy=False)
+        excess2s = np.empty((len(centred), *self.half_norms2.shape), self._dtype)
+        for number, (columns, slopes) in enumerate(self._slopes):
+            excess2s[:, number] = blas.few_rows_matmul(centred[:, columns], slopes)
         excess2s += self.half_norms2
         excess2s -= excess2s.min(axis=2, keepdims=True)
         excess2s *= 2
         return excess2s
-
-    def _products(self, centred: Array) -> Array:
-        """Return the products of inputs less `centre` (n, sum of dims) with the weights, shape (n, maps, units)."""
-        products = np.empty((len(centred), *self.half_norms2.shape), self._dtype)
-        for number, (columns, slopes) in enumerate(self._slopes):
-            products[:, number] = blas.few_rows_matmul(centred[:, columns], slopes)
-        return products
