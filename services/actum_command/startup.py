@@ -21,9 +21,9 @@ CHECK_S = 0.2  # interval of checks for the router: so short that nobody notices
 ROUTER_S = 5.0  # a router is up within a second; services wait for it by themselves where it takes longer
 
 FILES_ELSEWHERE = {
-    "simulator": "use --source recording",
-    "none": "use --source recording",
-    "camera": "set ACTUM_CAMERA to this video file",
+    "simulator": "To play recordings, use --source recording",
+    "none": "To play recordings, use --source recording",
+    "camera": "To read a video file, set ACTUM_CAMERA to that file",
 }
 """The sources that play no file, each with how a file is named instead."""
 
@@ -64,7 +64,7 @@ def chosen_source(named: str | None, given: Given) -> str:
     """
     source = named or ("camera" if "camera" in given else "simulator")
     if "path" in given and source in FILES_ELSEWHERE:
-        raise SettingsError(f"--source {source} takes no file, so leave out --path: {FILES_ELSEWHERE[source]}")
+        raise SettingsError(f"--source {source} does not read --path: leave out --path. {FILES_ELSEWHERE[source]}")
     if "camera" in given and source in WITHOUT_CAMERA:
         raise SettingsError(f"--source {source} uses no camera: leave out --camera, or use --source camera")
     sensor = SENSORS.get(source, "sensor_gateway")
@@ -92,7 +92,7 @@ def refuse_shared_source(source: str, given: Given, settings: ServiceSettings) -
     depth = "" if OWN_SOURCE[source] == "camera" or source == "recording" else DEPTH_CAMERAS
     raise SettingsError(
         f"--source {source} for {count} sensors needs {flag} {count} times, but {flag} is given {len(named)} times: "
-        f"give it once for each sensor, in the order of the sensors{depth}"
+        f"give {flag} once for each sensor, in the order of the sensors{depth}"
     )
 
 

@@ -80,8 +80,8 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     named = sensors.split(",") if sensors is not None else [f"kinect{number}" for number in range(len(cameras))]
     if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
         raise SettingsError(
-            f"hosts: {text!r}: give camera=ADDRESS and compute=ADDRESS; "
-            "further hosts need names of their own, such as camera2=ADDRESS"
+            f"hosts: {text!r}: name at least one camera host and one compute host, and give each host a different "
+            "name, such as camera=ADDRESS,camera2=ADDRESS,compute=ADDRESS"
         )
     if len(named) != len(cameras) or len(set(named)) < len(named):
         raise SettingsError(f"sensors: {sensors!r}: give {len(cameras)} different sensor names, one per camera")

@@ -145,7 +145,7 @@ def main() -> None:
     except (Refusal, TrainingError, RecordingError, NoSpotterError, ModelError, OSError) as error:
         print_line(error=str(error))
     except ModuleNotFoundError as error:
-        print_line(error=f"{error.name} is not installed: {adding('camera')}")
+        print_line(error=f"{error.name} is not installed: run {adding('camera')}")
 
 
 def _snapshot(arguments: Arguments) -> Path:

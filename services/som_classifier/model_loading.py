@@ -81,8 +81,11 @@ def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
     except UNREADABLE as error:
         if made_by == __version__ or not VERSION.fullmatch(made_by):
             raise
-        problem = f"actum {made_by} made the model, and actum {__version__} cannot use it ({_problem(error)})"
-        raise ModelError(path, problem, "train a new model from the same recordings") from None
+        raise ModelError(
+            path,
+            f"actum {made_by} made the model, and actum {__version__} cannot use it ({_problem(error)})",
+            "train a new model from the same recordings",
+        ) from None
 
 
 def _problem(error: Exception) -> str:

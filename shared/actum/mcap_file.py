@@ -113,7 +113,7 @@ class McapFile:
                 raise RecordingError(self.path, "the path names a device or a pipe, not a file", REMEDY)
             file = self.path.open("rb")
         except OSError as error:
-            raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
+            raise RecordingError(self.path, f"the file cannot be read ({error.strerror or error})", REMEDY) from None
         if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
             file.close()
             raise RecordingError(self.path, "the file is not an MCAP file", REMEDY)

@@ -152,7 +152,7 @@ def up(
             if page:
                 programs = processes.with_page(here, programs, with_page_ports(given, here))
                 if programs[-1].module != processes.PAGE:
-                    say(f"no web page: {adding('web-dashboard')}", style="yellow")
+                    say(f"no web page: run {adding('web-dashboard')}", style="yellow")
             run(here, programs, chosen)
     except (SettingsError, ValidationError) as error:
         fail(complaint(error))

@@ -94,7 +94,7 @@ def connect_whenever() -> Client:
 def refuse_without(module: str, what: str, extra: str) -> None:
     """Fail where a library is not installed; `what` begins the sentence and names the library."""
     if find_spec(module) is None:
-        fail(f"{what} is not installed: {adding(extra)}")
+        fail(f"{what} is not installed: run {adding(extra)}")
 
 
 def refuse_ending(file: Path, *endings: str) -> None:

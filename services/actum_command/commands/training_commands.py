@@ -106,8 +106,10 @@ def _known(path: Path, context: typer.Context) -> tuple[Model, Arrays]:
     flags = {"preset": "--preset", "settings": "--set", "background": "--background", "continued": "--continue"}
     given = flags_given(context, flags)
     if given:
-        kept = "preset, settings, background and continuation"
-        fail(f"with --add-to, the model keeps its {kept}: leave out {' and '.join(given)}")
+        fail(
+            "with --add-to, the model keeps its preset, settings, background and continuation: leave out "
+            f"{' and '.join(given)}"
+        )
     with failing_on(ModelError):
         return load_model(path), kept_in(path)
 

@@ -183,6 +183,7 @@ def _cropper(settings: Settings, counters: Counters) -> "Cropper | None":
         from ros2_bridge.hri_out.cropping import Cropper  # an installation for ROS 2 lacks OpenCV
     except ModuleNotFoundError as error:
         raise SettingsError(
-            f"ros_topics: the topic cropped needs {error.name}, which is not installed: {adding('marker-tracker')}"
+            f"ros_topics: the topic 'cropped' needs {error.name}, which is not installed: run "
+            f"{adding('marker-tracker')}"
         ) from None
     return Cropper(counters)

@@ -27,8 +27,8 @@ SEARCH_NS = SECOND_NS
 """Interval of searches for further people while there is one: a search costs three times as much as tracking one."""
 TOGETHER_NS = 2 * SECOND_NS
 """Time after several people were detected in which each image is searched for several: one may be hidden briefly."""
-LIBRARIES = "on Debian and Ubuntu run: apt install libegl1 libgles2"
-FETCH = "download one with 'actum models fetch', or name a file in ACTUM_POSE_MODEL"
+INSTALL_LIBRARIES = "install the missing libraries (on Debian and Ubuntu: apt install libegl1 libgles2)"
+FETCH = "download a pose model with 'actum models fetch', or set ACTUM_POSE_MODEL to the file of one"
 
 
 LANDMARKS: tuple[str, ...] = (
@@ -187,7 +187,7 @@ class Landmarker:
             first = str(error).partition("\n")[0]
             raise PoseModelError(f"{model_path} is not a pose model ({first}): {FETCH}") from None
         except OSError as error:
-            raise PoseModelError(f"MediaPipe cannot be loaded ({error}): {LIBRARIES}") from None
+            raise PoseModelError(f"MediaPipe cannot be loaded ({error}): {INSTALL_LIBRARIES}") from None
 
 
 @contextmanager

@@ -53,7 +53,7 @@ def needs_extra(name: str) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if "." in (error.name or "."):
             raise
-        print(f"{error.name} is not installed: {adding(name)}", file=sys.stderr)
+        print(f"{error.name} is not installed: run {adding(name)}", file=sys.stderr)
         sys.exit(UNUSABLE)
 
 
