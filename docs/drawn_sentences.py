@@ -23,7 +23,7 @@ REFUSING = ("fail", "warning", "error", "critical", "exception")
 """The functions and the logger's methods that print what went wrong."""
 FINDINGS = ("diagnosis", "service_checks", "stream_checks", "obstacles", "advice")
 """The modules whose functions yield or return what is wrong."""
-FUNCTIONS = ("join", "any", "map", "str", "sorted", "getattr")
+FUNCTIONS = ("join", "split", "any", "map", "str", "sorted", "getattr")
 """Functions whose names do not say what they are applied to, so that a hole gets the name of that."""
 FEWEST_WORDS = 3  # a shorter text frames another one, such as `{path}: {problem}`
 DRAWN = {"errors": 15, "helps": 20, "paragraphs": 10}

@@ -164,7 +164,7 @@ OF_FRAMES: Mapping[str, Problem] = {
     "remove that driver": Problem(
         "A driver that does not play files claims the recording.", "Remove that driver from OpenNI's folder."
     ),
-    "the camera lacks colour or depth images: use a camera that has both": Problem(
+    "the camera does not send both colour and depth images: use a camera that sends both": Problem(
         "One of the two streams is missing.", "Use another camera."
     ),
     "the camera sends colour images in the format …; only RGB888 is supported": Problem(
@@ -176,8 +176,8 @@ OF_FRAMES: Mapping[str, Problem] = {
     ),
     "frozen: the picture has not changed for … s": Problem("The picture repeats bit for bit.", "Restart the camera."),
     "NiTE says: …": Problem("NiTE failed.", "Read the message."),
-    "NiTE, which finds people in depth images, cannot use this camera (…): unset NITE2_REDIST64 and NITE2_REDIST and "
-    "restart the gateway, which then finds people with the pose model": Problem(
+    "NiTE, which finds people in depth images, cannot use this camera (…): unset NITE2_REDIST64 and NITE2_REDIST, and "
+    "restart the gateway. The gateway then finds people with the pose model": Problem(
         "NiTE refuses the device.", "Unset both environment variables."
     ),
 }

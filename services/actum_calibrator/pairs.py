@@ -40,8 +40,9 @@ def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
         files = [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
         if stray := next((file.name for file in files if not file.stem.endswith(SUFFIXES)), None):
             raise PairingError(
-                f"the picture {stray} is not named NAME_a or NAME_b: rename this file (_a for the camera that sees "
-                "the markers, _b for the camera that sees the people), or give one folder per camera"
+                f"the name of the picture {stray} ends neither in _a nor in _b: name the pictures of the camera that "
+                "sees the markers NAME_a and those of the camera that sees the people NAME_b, or give one folder per "
+                "camera"
             )
         sides = [_by_name([f for f in files if f.stem.endswith(end)], lambda f: f.stem[:-2]) for end in SUFFIXES]
     if alone := sorted(set(sides[0]) ^ set(sides[1])):

@@ -15,8 +15,8 @@ from actum_calibrator.view_collector import PairCollector, ViewCollector
 SILENCE_S = 10.0  # longer than the slowest camera takes from the gateway's start to the first frame
 POLL_S = 0.01  # a third of a frame's interval
 SIZE_REMEDY = (
-    "If ACTUM_CALIBRATION of the sensor gateway is for another image size than the camera's, start the sensor gateway "
-    "without ACTUM_CALIBRATION"
+    "If the sensor gateway's calibration file (ACTUM_CALIBRATION) was made at another image size, start the sensor "
+    "gateway without this file"
 )
 
 Tell = Callable[[str], object]

@@ -63,8 +63,8 @@ def chosen_source(named: str | None, given: Given) -> str:
         SettingsError: it does not start the service that a given setting is for, or plays no file though one is named.
     """
     source = named or ("camera" if "camera" in given else "simulator")
-    if "path" in given and source in FILES_ELSEWHERE:
-        raise SettingsError(f"--source {source} does not read --path: leave out --path. {FILES_ELSEWHERE[source]}")
+    if "path" in given and (remedy := FILES_ELSEWHERE.get(source)):
+        raise SettingsError(f"--source {source} does not read --path: leave out --path. {remedy}")
     if "camera" in given and source in WITHOUT_CAMERA:
         raise SettingsError(f"--source {source} uses no camera: leave out --camera, or use --source camera")
     sensor = SENSORS.get(source, "sensor_gateway")

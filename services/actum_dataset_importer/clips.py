@@ -103,7 +103,9 @@ def check_names(files: Sequence[Path]) -> None:
     for file in files:
         other = taken.setdefault(recording_name(file).casefold(), file)
         if other is not file:
-            raise DatasetError(f"{other} and {file} would both become {recording_name(file)}.mcap: rename one of them")
+            raise DatasetError(
+                f"{other} and {file} would both become {recording_name(file)}.mcap: rename one of the two"
+            )
 
 
 def read_clip(

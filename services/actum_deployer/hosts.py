@@ -114,7 +114,8 @@ def host_of(text: str) -> Host:
     chunk(name)
     if not any(name.startswith(kind) for kind in KINDS):
         raise SettingsError(
-            f"hosts: {text!r}: the name before = has to begin with {' or '.join(KINDS)}, such as camera=192.168.1.5"
+            f"hosts: {text!r}: the host's name, before the '=', has to begin with {' or '.join(KINDS)}, such as "
+            "camera=192.168.1.5"
         )
     if not address or not own_port.isdecimal() or not 0 < int(own_port) <= HIGHEST_PORT:
         raise SettingsError(

@@ -155,7 +155,6 @@ def _only_sensor(take: Take) -> str:
     if len(names) != 1:
         found = f" ({', '.join(names)})" if names else ""
         raise EditError(
-            f"{take.path} contains skeletons of {len(names)} sensors{found}: only a recording of exactly one sensor "
-            "can be labelled"
+            f"{take.path} contains skeletons of {len(names)} sensors{found}: give a recording of exactly one sensor"
         )
     return names[0]

@@ -105,8 +105,8 @@ def _confused(contents: Contents, answers: Sequence[tuple[str, str]]) -> Iterato
         if wrong >= CONFUSED_TIMES and wrong >= CONFUSED_SHARE * (wrong + times[a, a] + times[b, b]):
             yield (
                 f"The model confuses {a} and {b}: in a test on examples left out of the training, "
-                f"{_mistakes(a, b, times)}. Record {MIN_EXAMPLES} more examples of each of the two actions with "
-                f"{others}, or make the two actions more different."
+                f"{_mistakes(a, b, times)}. Record {MIN_EXAMPLES} more examples of each of the two actions, performed "
+                f"by {others}, or make the two actions more different."
             )
 
 
@@ -149,8 +149,8 @@ def _one_person(contents: Contents) -> Iterator[str]:
     elif len(contents.people) == 1:
         who = next(iter(contents.people))
         yield (
-            f"All examples show the same person, {who}: record {MIN_EXAMPLES} examples of each action with a second "
-            "person."
+            f"All examples show the same person, {who}: record {MIN_EXAMPLES} examples of each action, performed by a "
+            "second person."
         )
 
 

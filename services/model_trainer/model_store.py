@@ -120,7 +120,10 @@ class ModelStore:
         """
         before = self.before
         if not before:
-            raise Refusal("there is no previous model to return to")
+            raise Refusal(
+                "no model was in use before this one, so there is no model to return to: choose a model with the "
+                "command 'activate'"
+            )
         self.activate(before[-1])
         self._remember(before[:-1])
 

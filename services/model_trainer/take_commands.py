@@ -95,7 +95,7 @@ class TakeCommands:
             return self._finish()
         except LOSING as error:
             self._give_up()
-            raise Refusal(f"the recording could not be stored and is lost: {error}") from None
+            raise Refusal(f"the recording could not be stored and is lost ({error}): record again") from None
 
     def _discard(self, _: NoFields) -> Done:
         """Drop the take that is being recorded."""

@@ -47,7 +47,7 @@ class Ask(BaseModel):
         if taken := fields.keys() & OURS:
             raise ValueError(
                 f"a command cannot have the fields {', '.join(sorted(taken))}, because these names are reserved: "
-                "rename the fields"
+                "leave out these fields"
             )
         return fields
 

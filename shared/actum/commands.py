@@ -198,7 +198,7 @@ def _inner(value: Any) -> Iterator[Any]:
         case float() if not math.isfinite(value):
             raise Refusal(f"the request contains the number {value}: send finite numbers")
         case int() if value not in INTEGERS:
-            raise Refusal("the request contains an integer of more than 64 bits: send a smaller one")
+            raise Refusal("the request contains an integer of more than 64 bits: send a smaller integer")
         case None | str() | float() | int() | bytes():
             return
         case _:

@@ -180,7 +180,10 @@ def _decompressed(chunk: Chunk) -> bytes:
         case "lz4":
             return bytes(lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most))
         case other:
-            raise ValueError(f"a block in the file is compressed with {other!r}; only zstd and lz4 can be read")
+            raise ValueError(
+                f"a block in the file is compressed with {other!r}, which actum cannot read: compress the file with "
+                "zstd or lz4"
+            )
 
 
 def encoding_of(channel: Channel, schema: str) -> str:

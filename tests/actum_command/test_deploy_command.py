@@ -94,10 +94,13 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("init", "--hosts", "camera=a"), "give camera=ADDRESS and compute=ADDRESS"),
-        (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords exclude each other"),
-        (("init", *HOSTS, "--ros-bodies", "camera"), "--ros-bodies needs --ros2 and a single camera host"),
-        (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "camera", "--simulate"), "excludes --simulate"),
+        (("init", "--hosts", "camera=a"), "name at least one camera host and one compute host"),
+        (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords cannot be used together"),
+        (
+            ("init", *HOSTS, "--ros-bodies", "camera"),
+            "--ros-bodies works only with --ros2, with exactly one camera host",
+        ),
+        (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "camera", "--simulate"), "without --simulate"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", ""), "'' is not the name of a frame"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "a\nExecStart=b"), "is not the name of a frame"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", 'the "camera"'), "is not the name of a frame"),

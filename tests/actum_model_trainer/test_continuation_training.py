@@ -112,5 +112,5 @@ def test_a_model_to_which_an_action_is_added_continues_as_before(monkeypatch: py
 
 def test_a_kind_of_model_that_cannot_continue_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delitem(CONTINUATIONS, "pyramid")
-    with pytest.raises(TrainingError, match="models of kind 'pyramid' cannot predict how a posture goes on"):
+    with pytest.raises(TrainingError, match="models of kind 'pyramid' cannot predict later postures"):
         with_continuation(without_continuation("pyramid"), taught().streams)

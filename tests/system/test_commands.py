@@ -54,7 +54,7 @@ def test_a_mark_without_a_classifier_ends_with_code_1_and_says_why(running: Syst
     with running.client():
         marking = running.actum("segment", "start", "a")
     assert marking.returncode == 1
-    assert "no service received the start mark on actum/kinect0/segment" in marking.stderr
+    assert "no service receives marks on actum/kinect0/segment, so the start mark was not sent" in marking.stderr
 
 
 def test_without_a_router_a_command_says_what_to_do(running: System) -> None:

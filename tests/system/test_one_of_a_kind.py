@@ -151,7 +151,7 @@ def test_one_that_no_longer_answers_is_waited_for_and_ends_when_it_comes_back(ru
         first.process.send_signal(signal.SIGSTOP)
         second = start(running, "one")
         wait_for_tokens(client, "pose_preprocessor/one")
-        assert "two, is registered but does not answer: waiting" in second.said()
+        assert "two, is registered but does not answer: this instance waits" in second.said()
         first.process.send_signal(signal.SIGCONT)
         assert code_of(first) == 0
         assert "one replaces this instance" in first.said()

@@ -85,7 +85,7 @@ def test_a_router_that_is_frozen(running: System) -> None:
         pass
     router.process.send_signal(signal.SIGSTOP)
     try:
-        assert "does not answer as a router: another program" in said(running, running.settings.connect)
+        assert "accepts connections, but no router answers there" in said(running, running.settings.connect)
     finally:
         router.process.send_signal(signal.SIGCONT)
 

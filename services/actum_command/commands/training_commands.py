@@ -167,5 +167,8 @@ def preset_named(name: str, settings: Sequence[str]) -> Preset:
 def refuse_place(file: Path, ending: str) -> None:
     """Fail before long work where its result could not be written."""
     if not file.parent.is_dir():
-        fail(f"{file} cannot be written: the folder {file.parent} does not exist")
+        fail(
+            f"{file} cannot be written: the folder {file.parent} does not exist. Create this folder, or give another "
+            "file"
+        )
     refuse_unwritable(file, ending)

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.installing import adding
+from actum.installing import install_command
 from actum.node import SECOND_NS
 from sensor_gateway.people.landmarks import Landmarks, joint_weights
 
@@ -28,7 +28,7 @@ SEARCH_NS = SECOND_NS
 TOGETHER_NS = 2 * SECOND_NS
 """Time after several people were detected in which each image is searched for several: one may be hidden briefly."""
 INSTALL_LIBRARIES = "install the missing libraries (on Debian and Ubuntu: apt install libegl1 libgles2)"
-FETCH = "download a pose model with 'actum models fetch', or set ACTUM_POSE_MODEL to the file of one"
+FETCH = "download a pose model with 'actum models fetch', or set ACTUM_POSE_MODEL to an existing pose model"
 
 
 LANDMARKS: tuple[str, ...] = (
@@ -209,5 +209,7 @@ def _mediapipe() -> Any:
     try:
         import mediapipe
     except ImportError as error:
-        raise PoseModelError(f"finding people in images needs MediaPipe ({error}): run {adding('camera')}") from None
+        raise PoseModelError(
+            f"finding people in images needs MediaPipe ({error}): run {install_command('camera')}"
+        ) from None
     return mediapipe

@@ -87,7 +87,7 @@ def check(folder: Path) -> None:
     except ssl.SSLError as error:
         problem = error.reason or "no certificate"
         raise SettingsError(
-            f"credentials: the certificate and key files in {folder} do not belong together ({problem}): copy the "
+            f"credentials: the certificate and key files in {folder} cannot be used together ({problem}): copy the "
             "credentials folder to this machine again"
         ) from None
 

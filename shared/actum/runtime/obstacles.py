@@ -97,7 +97,8 @@ def _on_the_way(error: OSError, host: str, port: int) -> str:
         )
     if isinstance(error, TimeoutError):
         return (
-            f"{host} does not answer: check that it is switched on and connected, and that firewalls allow port {port}"
+            f"{host} does not answer: check that this host is switched on and connected, and that firewalls allow "
+            f"port {port}"
         )
     if isinstance(error, ConnectionRefusedError):
         return (
@@ -165,10 +166,11 @@ def _own_fault(tls: Tls) -> str | None:
             f"{tls.certificate} is not signed by the authority in {tls.authority} ({problem}): use the certificate "
             "and the authority of the same credentials folder"
         )
-    if time.time() > ssl.cert_time_to_seconds(own["notAfter"]):
-        return f"{tls.certificate} expired on {own['notAfter']}: renew it with 'actum deploy rotate'"
-    if time.time() < ssl.cert_time_to_seconds(own["notBefore"]):
-        return f"{tls.certificate} is not valid before {own['notBefore']}: check this machine's clock"
+    begin, end = own["notBefore"], own["notAfter"]
+    if time.time() > ssl.cert_time_to_seconds(end):
+        return f"{tls.certificate} expired on {end}: renew this certificate with 'actum deploy rotate'"
+    if time.time() < ssl.cert_time_to_seconds(begin):
+        return f"{tls.certificate} is not valid before {begin}: check this machine's clock"
     return None
 
 

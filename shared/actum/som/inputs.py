@@ -16,7 +16,9 @@ def some_rows(vectors: ArrayLike) -> Array:
     """
     rows = numbers(vectors)
     if not len(rows):
-        raise ValueError("no input vectors are given, so the error of the map cannot be computed: give at least one")
+        raise ValueError(
+            "no input vectors are given, so the error of the map cannot be computed: give at least one vector"
+        )
     return rows
 
 

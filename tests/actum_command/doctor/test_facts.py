@@ -9,8 +9,8 @@ from actum_command.doctor.stream_checks import hops
 def test_a_line_says_who_serves_a_shared_sensor_and_who_stands_by() -> None:
     tokens, members = {"som_classifier": ["south"]}, {"som_classifier": ["south", "north"], "action_fusion": ["north"]}
     assert list(who_serves(Heard(tokens, [], {}, {}, members))) == [
-        "action_fusion is shared; it is run for this sensor by: nobody yet; standing by: north",
-        "som_classifier is shared; it is run for this sensor by: south; standing by: north",
+        "several processes share action_fusion; serving this sensor: none yet; standing by: north",
+        "several processes share som_classifier; serving this sensor: south; standing by: north",
     ]
 
 
