@@ -72,9 +72,10 @@ def chosen_source(named: str | None, given: Given) -> str:
     started = behind if sensor is None else (*behind, sensor)
     of_started = {name for service in started for name in DECLARED[service].model_fields}
     for name in (name for name in given if name not in of_started):
-        remedy = "" if named else ": use another --source"
+        flag, service = flag_of(name), service_of(name)
         raise SettingsError(
-            f"{flag_of(name)} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
+            f"{flag} is a setting of {service}, which --source {source} does not start: leave out {flag}, or use "
+            "another --source"
         )
     return source
 

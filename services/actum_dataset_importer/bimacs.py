@@ -95,7 +95,7 @@ def take_files(folder: Path) -> list[Path]:
     files = [file for file in folder.glob(PATTERN) if NAME.fullmatch(file.stem)]
     if not files:
         raise DatasetError(
-            f"{folder} contains no file named {PATTERN}: give the folder of the data set that holds these files"
+            f"{folder} contains no file named {PATTERN}: give the folder of the data set that contains such files"
         )
     return sorted(files, key=lambda file: tuple(map(int, re.findall(r"\d+", file.stem))))
 

@@ -142,7 +142,7 @@ def _refuse_overlap(take: Take, segment: MarkedSegment, others: Iterable[MarkedS
             )
             raise EditError(
                 f"the segment would extend from {span} s and overlap the segment {other.segment_id} ({other_span} s): "
-                f"first move or delete the segment {other.segment_id}"
+                "move or delete that segment first"
             )
 
 

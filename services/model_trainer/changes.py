@@ -41,7 +41,7 @@ def on_disk() -> Iterator[None]:
     try:
         yield
     except (OSError, RecordingError) as error:
-        raise Refusal(f"{file_problem(error)}; nothing was changed") from None
+        raise Refusal(f"{file_problem(error)}; nothing was changed: solve this problem, then try again") from None
 
 
 def refusing(command: Command[Any, Any]) -> Command[Any, Any]:

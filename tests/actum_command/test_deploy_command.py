@@ -64,14 +64,14 @@ def test_revoked_credentials_get_another_name_and_keep_it_when_init_is_run_again
 
 def test_what_was_revoked_is_not_forgotten_with_the_file_that_says_so(lab: Path) -> None:
     (lab / "deployment.json").unlink()
-    assert "delete authority/" in refusal("init", lab, *HOSTS)
+    assert "delete the folder authority/" in refusal("init", lab, *HOSTS)
 
 
 @pytest.mark.parametrize("name", ["router.camera", "gateway.kinect9", "page", "viewer#1", ""])
 def test_who_is_nobody_or_a_router_cannot_be_revoked(name: str, lab: Path) -> None:
     before = (lab / "deployment.json").read_text()
     said = refusal("rotate", lab, "--revoke", name)
-    assert "page.kinect0" in said and "delete authority/" in said
+    assert "page.kinect0" in said and "delete the folder authority/" in said
     assert (lab / "deployment.json").read_text() == before
 
 

@@ -129,7 +129,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
     foreign = tmp_path / "foreign.npz"
     foreign.write_bytes(b"PK not a model")
     assert "actum train" in refusal(foreign, "-o", tmp_path / "out")
-    assert "the file does not exist" in refusal(tmp_path / "none.npz", "-o", tmp_path / "out")
+    assert "the model file does not exist" in refusal(tmp_path / "none.npz", "-o", tmp_path / "out")
     assert "png, svg" in refusal(tmp_path / "m.npz", "-o", tmp_path / "out", "--format", "bmp")
     assert "no recordings" in refusal(tmp_path / "m.npz", tmp_path, "-o", tmp_path / "out")
     assert "foreign.npz is not a folder" in refusal(tmp_path / "m.npz", "-o", foreign)

@@ -91,7 +91,9 @@ def test_streams_that_are_too_short_are_refused(kind: str) -> None:
 
 def test_a_map_of_postures_that_turn_with_the_body_is_refused() -> None:
     model = train(taught().usable, TINY_PAPER)
-    with pytest.raises(TrainingError, match="axes=upright and origin=hips cannot predict.*use axes=upright and origin"):
+    with pytest.raises(
+        TrainingError, match="axes=upright and origin=hips cannot predict.*train a model with axes=upright and origin"
+    ):
         with_continuation(model, taught().streams)
 
 

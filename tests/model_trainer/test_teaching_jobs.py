@@ -90,7 +90,7 @@ def test_a_set_is_trained_put_into_use_and_undone(teacher: Teacher, finish: Fini
     third = classifier.poll(Counters())
     assert third is not None and third.id == first.id
     assert not teacher.tick().can_undo
-    with pytest.raises(Refusal, match="no previous model to return to"):
+    with pytest.raises(Refusal, match="there is no model to return to"):
         teacher.ask("undo")
 
 
