@@ -83,7 +83,7 @@ def intrinsics(
     command writes a picture that shows in which parts of the image the board was seen.
     """
     if live == bool(images):
-        fail("give either pictures of the board or --live, which takes the pictures now; not both")
+        fail("give either pictures of the board or --live, not both; --live takes the pictures now")
     files = [file for path in images or [] for file in (pictures_in(path) if path.is_dir() else [path])]
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
