@@ -75,7 +75,7 @@ def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
     about = json.loads(metadata)
     kind, made_by = about.get("kind"), str(about.get("actum_version"))
     if kind not in KINDS:
-        raise ModelError(path, f"the model is of the kind {kind!r}, which this version of actum does not support")
+        raise ModelError(path, f"the model is of kind {kind!r}, which this version of actum does not support")
     try:
         return KINDS[kind].restored(metadata, arrays)
     except UNREADABLE as error:

@@ -415,7 +415,7 @@ def test_who_waits_for_a_router_says_so_once(
     monkeypatch.setattr(terminal, "Client", opened)
     terminal.connect_whenever()
     assert tried == [0, float("inf")]
-    assert capsys.readouterr().out == f"there is no router at {ServiceSettings().connect} yet: waiting for one\n"
+    assert capsys.readouterr().out == f"there is no router at {ServiceSettings().connect} yet: waiting for a router\n"
 
 
 @pytest.fixture

@@ -167,7 +167,7 @@ def test_a_model_that_keeps_nothing_is_refused() -> None:
         ),
         pytest.param(
             lambda kept: {n: a for n, a in kept.items() if not n.startswith("kept_window")},
-            "not contain the windows",
+            "not contain the training data of the search",
             id="no windows",
         ),
     ],

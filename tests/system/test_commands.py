@@ -94,7 +94,7 @@ def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothi
             return examined.returncode == 0 and "all services are there" in examined.stdout
 
         wait_until(all_is_well, "doctor finds nothing, once a busy machine keeps up with the sensor")
-        assert "waiting for one" not in up.said(), "the router is there first"
+        assert "waiting for a router" not in up.said(), "the router is there first"
         wait_until(lambda: re.search(r"the page: http://127.0.0.1:\d+/", up.said()) is not None, "it names the page")
         subprocess.run(["pkill", "-KILL", "-P", str(up.process.pid), "-f", "action_fusion"], check=True)
         wait_until(lambda: "action_fusion ended with code -9 and restarts" in up.said(), "the supervisor notices")

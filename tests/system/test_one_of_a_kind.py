@@ -93,7 +93,7 @@ def survivor(services: Sequence[Running]) -> Running:
 
 def test_of_some_that_wait_for_the_same_router_one_stays(running: System) -> None:
     services = [start(running, name) for name in ("one", "two", "three")]
-    wait_until(lambda: all("waiting for one" in it.said() for it in services), "each says that it waits")
+    wait_until(lambda: all("waiting for a router" in it.said() for it in services), "each says that it waits")
     running.start_router()
     survivor(services)
     with running.client() as client:

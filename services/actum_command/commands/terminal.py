@@ -85,7 +85,7 @@ def connect_whenever() -> Client:
     try:
         return Client(here, wait_s=0)
     except RouterUnreachableError:
-        say(f"there is no router at {here.connect} yet: waiting for one")
+        say(f"there is no router at {here.connect} yet: waiting for a router")
     except SettingsError as error:
         fail(str(error))
     return connect(wait_s=float("inf"))
