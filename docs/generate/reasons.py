@@ -153,7 +153,7 @@ OF_FRAMES: Mapping[str, Problem] = {
     "no RealSense camera is connected": Problem("librealsense finds no camera.", "Check USB 3 cable and udev rules."),
     "the RealSense camera with serial number … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
     "librealsense says: …": Problem("librealsense failed.", "Read the message."),
-    "the camera sends colour images in the format …; supported: bgr8, …": Problem(
+    "the camera sends colour images in the format …, which actum cannot read: use one of the formats bgr8, …": Problem(
         "The RealSense camera sends a colour format that actum cannot read.", "Set a supported format."
     ),
     "no camera that OpenNI 2 supports is connected": Problem(
@@ -167,7 +167,7 @@ OF_FRAMES: Mapping[str, Problem] = {
     "the camera does not send both colour and depth images: use a camera that sends both": Problem(
         "One of the two streams is missing.", "Use another camera."
     ),
-    "the camera sends colour images in the format …; only RGB888 is supported": Problem(
+    "the camera sends colour images in the format …; actum reads only RGB888: use another driver": Problem(
         "The OpenNI driver sends a colour format that actum cannot read.", "Use another driver."
     ),
     "OpenNI says: …": Problem("OpenNI failed.", "Read the message."),

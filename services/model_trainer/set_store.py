@@ -213,7 +213,8 @@ class SetStore:
             raise RecordingError(
                 path,
                 f"the recording has {count} actions with a start and an end; at most {MOST_SEGMENTS} are allowed",
-                "delete some of these actions with 'actum label delete', or record them in several shorter recordings",
+                "delete some of these actions with 'actum label delete', or record the actions in several shorter "
+                "recordings",
             )
         self._read[path] = version, take
         return take

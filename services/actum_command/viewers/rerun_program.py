@@ -154,7 +154,8 @@ def _wait_until_listening(process: "subprocess.Popen[bytes]", address: str, port
             )
         if time.monotonic() > deadline_s:
             raise ViewerError(
-                f"the Rerun viewer did not listen on {', '.join(map(str, ports))} within {START_S:g} s: try again"
+                f"the Rerun viewer did not listen on port {' and '.join(map(str, ports))} within {START_S:g} s: try "
+                "again"
             )
         time.sleep(POLL_S)
 

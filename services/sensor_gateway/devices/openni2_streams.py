@@ -90,8 +90,8 @@ class Streams:
             pixels = rows[:, : 3 * frame.width].reshape(frame.height, frame.width, 3)
         else:
             raise CameraLostError(
-                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}; only RGB888 is "
-                "supported"
+                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}; actum reads only "
+                "RGB888: use another driver"
             )
         frames.append((frame.timestamp, (pixels[:, ::-1] if stream in self._mirrored else pixels).copy()))
         frame.close()

@@ -238,7 +238,8 @@ def _bgr(color: Any) -> NDArray[np.uint8]:
         return image
     if name not in TO_BGR:
         raise CameraLostError(
-            f"the camera sends colour images in the format {name}; supported: bgr8, {', '.join(TO_BGR)}"
+            f"the camera sends colour images in the format {name}, which actum cannot read: use one of the formats "
+            f"bgr8, {', '.join(TO_BGR)}"
         )
     packed = image.view(np.uint8).reshape(*image.shape[:2], -1)
     return np.asarray(cv2.cvtColor(packed, TO_BGR[name]), dtype=np.uint8)
