@@ -51,7 +51,7 @@ def test_a_host_that_does_not_answer(running: System) -> None:
         with full(silent.getsockname()):
             port = silent.getsockname()[1]
             assert said(running, f"tcp/127.0.0.1:{port}").startswith(
-                "127.0.0.1 does not answer: check that it is switched on and connected"
+                "127.0.0.1 does not answer: check that this host is switched on and connected"
             )
 
 
@@ -167,7 +167,7 @@ def test_a_wrong_password(running: System, authority: Authority) -> None:
     login = {"user": "viewer", "password": "wrong"}
     (viewer / "user.json5").write_text(json.dumps({"transport": {"auth": {"usrpwd": login}}}))
     refused = said(running, started(running, router), viewer)
-    assert "If the router rejects the login of user viewer, copy" in refused
+    assert "Either the router rejects the login of user viewer: copy" in refused
     assert "wrong" not in refused
 
 
