@@ -23,6 +23,8 @@ REFUSING = ("fail", "warning", "error", "critical", "exception")
 """The functions and the logger's methods that print what went wrong."""
 FINDINGS = ("diagnosis", "service_checks", "stream_checks", "obstacles", "advice")
 """The modules whose functions yield or return what is wrong."""
+FUNCTIONS = ("join", "split", "any", "map", "str", "sorted", "getattr")
+"""Functions whose names do not say what they are applied to, so that a hole gets the name of that."""
 FEWEST_WORDS = 3  # a shorter text frames another one, such as `{path}: {problem}`
 DRAWN = {"errors": 15, "helps": 20, "paragraphs": 10}
 """The number of texts of each kind that are drawn."""
@@ -71,7 +73,8 @@ def _hole(part: ast.expr, constants: Mapping[str, str]) -> str:
     match part:
         case ast.FormattedValue(value=ast.BinOp() as calculation) | (ast.BinOp() as calculation):
             return "{" + ast.unparse(calculation) + "}"
-    names = [getattr(node, "attr", getattr(node, "id", "")) for node in ast.walk(part)]
+    named = (getattr(node, "attr", getattr(node, "id", "")) for node in ast.walk(part))
+    names = [name for name in named if name not in FUNCTIONS]
     if len(names) > 1 and names[1] in constants:
         return constants[names[1]]
     return "{" + next((name.strip("_") for name in names if name), "…") + "}"

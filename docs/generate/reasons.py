@@ -153,7 +153,7 @@ OF_FRAMES: Mapping[str, Problem] = {
     "no RealSense camera is connected": Problem("librealsense finds no camera.", "Check USB 3 cable and udev rules."),
     "the RealSense camera with serial number … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
     "librealsense says: …": Problem("librealsense failed.", "Read the message."),
-    "the camera sends colour images in the format …; supported: bgr8, …": Problem(
+    "the camera sends colour images in the format …, which actum cannot read: use one of the formats bgr8, …": Problem(
         "The RealSense camera sends a colour format that actum cannot read.", "Set a supported format."
     ),
     "no camera that OpenNI 2 supports is connected": Problem(
@@ -164,10 +164,10 @@ OF_FRAMES: Mapping[str, Problem] = {
     "remove that driver": Problem(
         "A driver that does not play files claims the recording.", "Remove that driver from OpenNI's folder."
     ),
-    "the camera lacks colour or depth images: use a camera that has both": Problem(
+    "the camera does not send both colour and depth images: use a camera that sends both": Problem(
         "One of the two streams is missing.", "Use another camera."
     ),
-    "the camera sends colour images in the format …; only RGB888 is supported": Problem(
+    "the camera sends colour images in the format …; actum reads only RGB888: use another driver": Problem(
         "The OpenNI driver sends a colour format that actum cannot read.", "Use another driver."
     ),
     "OpenNI says: …": Problem("OpenNI failed.", "Read the message."),
@@ -176,8 +176,8 @@ OF_FRAMES: Mapping[str, Problem] = {
     ),
     "frozen: the picture has not changed for … s": Problem("The picture repeats bit for bit.", "Restart the camera."),
     "NiTE says: …": Problem("NiTE failed.", "Read the message."),
-    "NiTE, which finds people in depth images, cannot use this camera (…): unset NITE2_REDIST64 and NITE2_REDIST and "
-    "restart the gateway, which then finds people with the pose model": Problem(
+    "NiTE, which finds people in depth images, cannot use this camera (…): unset NITE2_REDIST64 and NITE2_REDIST, and "
+    "restart the gateway. The gateway then finds people with the pose model": Problem(
         "NiTE refuses the device.", "Unset both environment variables."
     ),
 }

@@ -11,7 +11,7 @@ from actum import geometry
 from actum.arrays import Array
 from actum.settings import RememberingSettings
 
-REMEDY = (
+MATRIX_REMEDY = (
     "give the 16 numbers of a 4x4 matrix, row by row, in metres, or the name of a file that contains only these numbers"
 )
 MOST_CHARACTERS = 10_000
@@ -42,7 +42,7 @@ def _transform_as_text(value: object) -> str | None:
     if numbers is None:
         numbers = _numbers(_content(text))
     if numbers is None or len(numbers) != 16:
-        raise ValueError(f"{text!r} is not a rigid transform: {REMEDY}")
+        raise ValueError(f"{text!r} is not a rigid transform: {MATRIX_REMEDY}")
     if not geometry.is_rigid(np.array(numbers).reshape(4, 4), FURTHEST_M):
         raise ValueError(
             f"{text!r} is not a rigid transform: the 4x4 matrix must consist of a rotation without scaling or "
@@ -73,7 +73,9 @@ def _content(name: str) -> str:
         with Path(name).open(encoding="utf-8") as file:
             return file.read(MOST_CHARACTERS)
     except (OSError, ValueError) as error:
-        raise ValueError(f"{name!r} is neither a list of numbers nor a readable file ({error}): {REMEDY}") from None
+        raise ValueError(
+            f"{name!r} is neither a list of numbers nor a readable file ({error}): {MATRIX_REMEDY}"
+        ) from None
 
 
 class Settings(RememberingSettings):
@@ -165,9 +167,9 @@ class Settings(RememberingSettings):
             self.world_from_camera = _of_sensor(transform, self.sensor)
         elif transform is not None and SENSOR not in transform:
             raise ValueError(
-                f"world-from-camera is the transform of one camera, but this process serves the sensors {self.sensor}: "
-                f"store the transform of each camera in a file, and name the files with {SENSOR} in place of the "
-                f"sensor's name, such as world-{SENSOR}.txt"
+                "world-from-camera is the transform of one camera, but this process serves the sensors "
+                f"{self.sensor}: store the transform of each camera in a file of its own, and set world-from-camera "
+                f"to the files' common name, with {SENSOR} in place of the sensor's name, such as world-{SENSOR}.txt"
             )
         return self
 

@@ -70,7 +70,7 @@ class BoardFinder:
         if blur > (limit_px := _most_blur_px(pixels)):
             raise BlurredError(
                 name,
-                f"the picture is blurred by {blur:.1f} px; at most {limit_px:.1f} px are usable: hold the board still",
+                f"the picture is blurred by {blur:.1f} px; at most {limit_px:.1f} px are allowed: hold the board still",
             )
         return View(name, (width, height), self._board, ids, corners_px, blur)
 

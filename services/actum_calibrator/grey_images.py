@@ -54,7 +54,9 @@ def decode_grey(data: bytes, name: str) -> Pixels:
     if width <= 0 or height <= 0:
         raise UnusablePictureError(name, "the file is not an image: use a picture file such as .png or .jpg")
     if width * height > LARGEST_PIXELS:
-        raise UnusablePictureError(name, f"the image is {width}x{height}; at most {LARGEST_PIXELS} pixels are allowed")
+        raise UnusablePictureError(
+            name, f"the image is {width}x{height}; at most {LARGEST_PIXELS} pixels are allowed: use a smaller image"
+        )
     if has_too_many_scans(data):
         raise UnusablePictureError(
             name, f"the JPEG has more than {MOST_SCANS} scans: save the picture again as a baseline JPEG"

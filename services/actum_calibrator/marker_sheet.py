@@ -64,7 +64,7 @@ def marker_sheet(family: str, ids: Sequence[int], size_mm: float, sheet_size: Sh
     family = canonical(family)
     cells = {number: black_cells(family, number) for number in ids}
     if not cells:
-        raise PatternError("no marker ids are given: give at least one")
+        raise PatternError("no marker ids are given: give at least one id")
     tile = Tile(size_mm)
     columns, rows = _grid(tile, sheet_size)
     numbers, each = list(cells), columns * rows

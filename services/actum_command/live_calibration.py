@@ -14,9 +14,9 @@ from actum_calibrator.view_collector import PairCollector, ViewCollector
 
 SILENCE_S = 10.0  # longer than the slowest camera takes from the gateway's start to the first frame
 POLL_S = 0.01  # a third of a frame's interval
-REMEDY = (
-    "If ACTUM_CALIBRATION of the sensor gateway is for another image size than the camera's, start the sensor gateway "
-    "without ACTUM_CALIBRATION"
+SIZE_REMEDY = (
+    "If the sensor gateway's calibration file (ACTUM_CALIBRATION) was made at another image size, start the sensor "
+    "gateway without this file"
 )
 
 Tell = Callable[[str], object]
@@ -108,7 +108,7 @@ class _ImageStream:
         self.key = key
         self._listening = client.listen(key, ring=1)
         self._valid_s = time.monotonic()
-        self._invalid: str | None = None
+        self._reason: str | None = None
 
     def newest(self) -> Image | None:
         """Return the newest image if it is valid and has come since the last call, else None.
@@ -119,17 +119,17 @@ class _ImageStream:
         received = self._listening.receive()
         image = None if received is None else received.message
         if isinstance(image, Image) and image.valid:
-            self._valid_s, self._invalid = time.monotonic(), None
+            self._valid_s, self._reason = time.monotonic(), None
             return image
         if isinstance(image, Image):
-            self._invalid = image.reason or "no reason given"
+            self._reason = image.reason or "no reason given"
         if time.monotonic() - self._valid_s <= SILENCE_S:
             return None
-        if self._invalid is not None:
+        if self._reason is not None:
             raise SilentStreamError(
-                f"no valid image arrived on {self.key} for {SILENCE_S:g} s ({self._invalid}). {REMEDY}"
+                f"no valid image arrived on {self.key} for {SILENCE_S:g} s ({self._reason}). {SIZE_REMEDY}"
             )
         raise SilentStreamError(
             f"no image arrived on {self.key} for {SILENCE_S:g} s: check that the sensor gateway publishes images. "
-            f"{REMEDY}"
+            f"{SIZE_REMEDY}"
         )

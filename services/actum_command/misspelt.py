@@ -11,7 +11,7 @@ ALIKE = 0.75
 """Least similarity (0 to 1, difflib's ratio): two letters changed places in a word of five has 0.8."""
 
 PREFIX = "ACTUM_"
-FILE = PREFIX + "CONFIG"
+CONFIG_FILE = PREFIX + "CONFIG"
 OTHERS = ("camera_device", "config", "data", "log", "models", "parent", "router_port", "videos")
 """The `ACTUM_…` variables that are no settings of services: the runtime, the compose files or the tests read them."""
 
@@ -32,7 +32,7 @@ def misspelt(environment: Mapping[str, str]) -> Iterator[str]:
     Raises:
         OSError, ValueError: the file cannot be read.
     """
-    file = environment.get(FILE)
+    file = environment.get(CONFIG_FILE)
     for name in tomllib.loads(Path(file).read_text(encoding="utf-8")) if file else ():
         if name not in KNOWN:
             yield f"{file}: {name} is not a setting{_suggestion(name)}"

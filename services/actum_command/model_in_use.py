@@ -76,7 +76,7 @@ def model_in_use(named: Path | None, source: str, given: Given) -> Iterator[Mode
         _delete_ended(taught.parent, Path(claimed.name))
     except OSError as error:
         raise SettingsError(
-            f"{taught.parent} cannot be used ({error}): set ACTUM_TRAINER_DATA to another folder"
+            f"the folder {taught.parent} cannot be used ({error}): set ACTUM_TRAINER_DATA to another folder"
         ) from None
     with folder_of_run as folder, claimed:  # two systems at a time share no model
         model = ModelInUse(Path(folder) / MODEL, original)

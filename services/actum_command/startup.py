@@ -21,9 +21,9 @@ CHECK_S = 0.2  # interval of checks for the router: so short that nobody notices
 ROUTER_S = 5.0  # a router is up within a second; services wait for it by themselves where it takes longer
 
 FILES_ELSEWHERE = {
-    "simulator": "use --source recording",
-    "none": "use --source recording",
-    "camera": "set ACTUM_CAMERA to this video file",
+    "simulator": "To play recordings, use --source recording",
+    "none": "To play recordings, use --source recording",
+    "camera": "To read a video file, set ACTUM_CAMERA to that file",
 }
 """The sources that play no file, each with how a file is named instead."""
 
@@ -63,8 +63,8 @@ def chosen_source(named: str | None, given: Given) -> str:
         SettingsError: it does not start the service that a given setting is for, or plays no file though one is named.
     """
     source = named or ("camera" if "camera" in given else "simulator")
-    if "path" in given and source in FILES_ELSEWHERE:
-        raise SettingsError(f"--source {source} takes no file, so leave out --path: {FILES_ELSEWHERE[source]}")
+    if "path" in given and (remedy := FILES_ELSEWHERE.get(source)):
+        raise SettingsError(f"--source {source} does not read --path: leave out --path. {remedy}")
     if "camera" in given and source in WITHOUT_CAMERA:
         raise SettingsError(f"--source {source} uses no camera: leave out --camera, or use --source camera")
     sensor = SENSORS.get(source, "sensor_gateway")
@@ -72,9 +72,10 @@ def chosen_source(named: str | None, given: Given) -> str:
     started = behind if sensor is None else (*behind, sensor)
     of_started = {name for service in started for name in DECLARED[service].model_fields}
     for name in (name for name in given if name not in of_started):
-        remedy = "" if named else ": use another --source"
+        flag, service = flag_of(name), service_of(name)
         raise SettingsError(
-            f"{flag_of(name)} is a setting of {service_of(name)}, which --source {source} does not start{remedy}"
+            f"{flag} is a setting of {service}, which --source {source} does not start: leave out {flag}, or use "
+            "another --source"
         )
     return source
 
@@ -92,7 +93,7 @@ def refuse_shared_source(source: str, given: Given, settings: ServiceSettings) -
     depth = "" if OWN_SOURCE[source] == "camera" or source == "recording" else DEPTH_CAMERAS
     raise SettingsError(
         f"--source {source} for {count} sensors needs {flag} {count} times, but {flag} is given {len(named)} times: "
-        f"give it once for each sensor, in the order of the sensors{depth}"
+        f"give {flag} once for each sensor, in the order of the sensors{depth}"
     )
 
 

@@ -95,7 +95,7 @@ def take_files(folder: Path) -> list[Path]:
     files = [file for file in folder.glob(PATTERN) if NAME.fullmatch(file.stem)]
     if not files:
         raise DatasetError(
-            f"{folder} contains no file named {PATTERN}: give the folder of the data set that holds these files"
+            f"{folder} contains no file named {PATTERN}: give the folder of the data set that contains such files"
         )
     return sorted(files, key=lambda file: tuple(map(int, re.findall(r"\d+", file.stem))))
 
@@ -123,8 +123,7 @@ def read_take(path: Path, sensor: str) -> HandsTake:
         truths = [_truth(label, name, stamps_ns, sensor) for name, label in named if label.target is not None]
     except (KeyError, TypeError, ValueError, IndexError, InvalidOperation) as error:
         raise DatasetError(
-            f"{path} does not hold a time stamp and the poses for every labelled frame ({error!r}): download the file "
-            "again"
+            f"{path} lacks the time stamp or a pose of a labelled frame ({error!r}): download the file again"
         ) from None
     skipped = [f"{path.stem} {label.hand} {label.action}" for label in labels if label.first >= label.last]
     return HandsTake(path.stem, match["person"], postures, objects, marks, truths, skipped)

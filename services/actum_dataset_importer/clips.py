@@ -67,8 +67,8 @@ class Naming:
         action = "" if match is None else (match["action"] or "").strip()
         if match is None or not action:
             raise DatasetError(
-                f"{path.name} is not imported, because --pattern {self.pattern.pattern!r} finds no action in its name: "
-                "rename the file, or give a --pattern whose group `action` matches part of this name"
+                f"{path.name} is not imported, because --pattern {self.pattern.pattern!r} finds no action in this "
+                "file name: rename the file, or give a --pattern whose group `action` matches part of the file name"
             )
         person = match["person"] if "person" in self.pattern.groupindex else ""
         return self.actions.get(action, action), (person or "").strip()
@@ -103,7 +103,9 @@ def check_names(files: Sequence[Path]) -> None:
     for file in files:
         other = taken.setdefault(recording_name(file).casefold(), file)
         if other is not file:
-            raise DatasetError(f"{other} and {file} would both become {recording_name(file)}.mcap: rename one of them")
+            raise DatasetError(
+                f"{other} and {file} would both become {recording_name(file)}.mcap: rename one of the two"
+            )
 
 
 def read_clip(

@@ -66,7 +66,7 @@ def passwords_of(deployment: Deployment, root: Path) -> dict[str, str]:
             login = login_values(folder.path)
         except SettingsError as error:
             raise SettingsError(
-                f"{error}. Or delete {folder.path / USER}: 'actum deploy' then makes a new password"
+                f"{error}. You can also delete {folder.path / USER}: 'actum deploy' then makes a new password"
             ) from None
         if login:
             passwords[login[f"{LOGIN}/user"]] = login[f"{LOGIN}/password"]

@@ -17,7 +17,7 @@ from actum_deployer.roles import BODIES_BRIDGE, BRIDGE, DETECTOR, PEOPLES, Role,
 
 ROUTERS_CANNOT = (
     "A router's credentials cannot be revoked, because clients would still trust them. To replace a router's "
-    "credentials, delete authority/, run 'actum deploy init' and copy all folders to their machines again"
+    "credentials, delete the folder authority/, run 'actum deploy init' and copy all folders to their machines again"
 )
 """Why the credentials of a router cannot be revoked: clients know it by its address, not by its name."""
 FILE = "deployment.json"

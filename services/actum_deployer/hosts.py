@@ -80,8 +80,8 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     named = sensors.split(",") if sensors is not None else [f"kinect{number}" for number in range(len(cameras))]
     if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
         raise SettingsError(
-            f"hosts: {text!r}: give camera=ADDRESS and compute=ADDRESS; "
-            "further hosts need names of their own, such as camera2=ADDRESS"
+            f"hosts: {text!r}: name at least one camera host and one compute host, and give each host a different "
+            "name, such as camera=ADDRESS,camera2=ADDRESS,compute=ADDRESS"
         )
     if len(named) != len(cameras) or len(set(named)) < len(named):
         raise SettingsError(f"sensors: {sensors!r}: give {len(cameras)} different sensor names, one per camera")
@@ -114,7 +114,8 @@ def host_of(text: str) -> Host:
     chunk(name)
     if not any(name.startswith(kind) for kind in KINDS):
         raise SettingsError(
-            f"hosts: {text!r}: the name before = has to begin with {' or '.join(KINDS)}, such as camera=192.168.1.5"
+            f"hosts: {text!r}: the host's name, before the '=', has to begin with {' or '.join(KINDS)}, such as "
+            "camera=192.168.1.5"
         )
     if not address or not own_port.isdecimal() or not 0 < int(own_port) <= HIGHEST_PORT:
         raise SettingsError(

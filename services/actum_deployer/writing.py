@@ -76,7 +76,7 @@ def revoked_before(root: Path) -> Mapping[str, int]:
         return Deployment.load(root).revoked if (root / FILE).exists() else {}
     raise SettingsError(
         f"{root} contains {AUTHORITYS}/ but no {FILE}, which lists the revoked credentials: restore {FILE}, or delete "
-        f"{AUTHORITYS}/, run 'actum deploy init' again and copy all folders to their machines again"
+        f"the folder {AUTHORITYS}/, run 'actum deploy init' again and copy all folders to their machines again"
     )
 
 

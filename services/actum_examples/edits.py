@@ -54,12 +54,10 @@ def move(take: Take, segment: MarkedSegment, start_ns: int, end_ns: int) -> None
     _refuse_bounds(take, moved, others)
     for other in others:
         if moved.mirrored != other.mirrored and moved.shares_frames(other):
-            mirrored, plain = (moved, other) if moved.mirrored else (other, moved)
+            mirrored, plain = (each.segment_id for each in ((moved, other) if moved.mirrored else (other, moved)))
             raise EditError(
-                f"segments {mirrored.segment_id} and {plain.segment_id} must not overlap, because "
-                f"{mirrored.segment_id} is mirrored (left and right exchanged) and {plain.segment_id} is not: leave "
-                "time between the two segments, "
-                f"or mirror {plain.segment_id} first"
+                f"segment {mirrored} is mirrored (left and right exchanged) and segment {plain} is not, so the two "
+                f"must not overlap: leave time between the two segments, or mirror {plain} first"
             )
     _mend(take, [(segment, moved)])
 
@@ -125,11 +123,13 @@ def _refuse_bounds(take: Take, segment: MarkedSegment, others: Iterable[MarkedSe
     start_ns, end_ns = segment.bounds_ns
     span = f"{_seconds(take, start_ns)} to {_seconds(take, end_ns)} s"
     if end_ns - start_ns < SHORTEST_NS:
-        raise EditError(f"the segment would last from {span}: its end has to be at least 0.1 s after its start")
+        raise EditError(
+            f"the segment would extend from {span}, which is too short: set the end at least 0.1 s after the start"
+        )
     if start_ns < take.first_ns or end_ns > take.last_ns:
         raise EditError(
-            f"the segment would last from {span}: use times from 0 to {_seconds(take, take.last_ns)} s, for which the "
-            "recording has frames"
+            f"the segment would extend from {span}, but the recording has frames only from 0 to "
+            f"{_seconds(take, take.last_ns)} s: use times in this range"
         )
     _refuse_overlap(take, segment, others)
 
@@ -141,8 +141,8 @@ def _refuse_overlap(take: Take, segment: MarkedSegment, others: Iterable[MarkedS
                 " to ".join(_seconds(take, ns) for ns in each.bounds_ns or ()) for each in (other, segment)
             )
             raise EditError(
-                f"the segment would last from {span} s and overlap segment {other.segment_id} ({other_span} s): first "
-                f"move or delete the segment {other.segment_id}"
+                f"the segment would extend from {span} s and overlap the segment {other.segment_id} ({other_span} s): "
+                "move or delete that segment first"
             )
 
 
@@ -155,7 +155,6 @@ def _only_sensor(take: Take) -> str:
     if len(names) != 1:
         found = f" ({', '.join(names)})" if names else ""
         raise EditError(
-            f"{take.path} contains skeletons of {len(names)} sensors{found}: only a recording of exactly one sensor "
-            "can be labelled"
+            f"{take.path} contains skeletons of {len(names)} sensors{found}: give a recording of exactly one sensor"
         )
     return names[0]

@@ -21,7 +21,7 @@ MOST_MARKED = 500
 LONGEST_NAME = 50
 """Characters of a segment's name that a refusal quotes."""
 NOT_KEPT = "nothing was kept: {}, and record the action again"
-BEGUN_ANEW = "the sensor restarted during the recording, so nothing was kept: record again"
+BEGUN_ANEW = "the sensor restarted during the recording, so the recording was discarded: record again"
 JUMPED = "the sensor's time stamps jumped by {:.0f} s, so nothing was kept: check the sensor's clock, and record again"
 
 

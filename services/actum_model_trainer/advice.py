@@ -89,7 +89,10 @@ def _too_few_actions(contents: Contents) -> Iterator[str]:
 def _doubted(contents: Contents) -> Iterator[str]:
     if contents.doubted:
         named = _listed(f"{n} of {label}" for label, n in sorted(contents.doubted.items()))
-        yield f"Some examples may have a wrong start or end ({named}): check them, and trim or delete the wrong ones."
+        yield (
+            f"Some examples may have a wrong start or end ({named}): check these examples, and trim or delete those "
+            "that are wrong."
+        )
 
 
 def _confused(contents: Contents, answers: Sequence[tuple[str, str]]) -> Iterator[str]:
@@ -102,8 +105,8 @@ def _confused(contents: Contents, answers: Sequence[tuple[str, str]]) -> Iterato
         if wrong >= CONFUSED_TIMES and wrong >= CONFUSED_SHARE * (wrong + times[a, a] + times[b, b]):
             yield (
                 f"The model confuses {a} and {b}: in a test on examples left out of the training, "
-                f"{_mistakes(a, b, times)}. Record {MIN_EXAMPLES} more examples of each by {others}, or perform the "
-                "two actions more differently."
+                f"{_mistakes(a, b, times)}. Record {MIN_EXAMPLES} more examples of each of the two actions, performed "
+                f"by {others}, or make the two actions more different."
             )
 
 
@@ -120,7 +123,7 @@ def _few(contents: Contents) -> Iterator[str]:
     few = {label: n for label, n in contents.examples.items() if n < MIN_EXAMPLES}
     if few:
         named = _listed(f"{label} has {n} ({MIN_EXAMPLES - n} more needed)" for label, n in few.items())
-        yield f"Few examples: {named}. Record at least {MIN_EXAMPLES} examples of each action."
+        yield f"Too few examples: {named}. Record at least {MIN_EXAMPLES} examples of each action."
 
 
 def _unbalanced(contents: Contents) -> Iterator[str]:
@@ -140,12 +143,15 @@ def _unbalanced(contents: Contents) -> Iterator[str]:
 def _one_person(contents: Contents) -> Iterator[str]:
     if contents.people == {""}:
         yield (
-            "No example names the person who performs it, so the model cannot learn how people differ: record at least "
-            "two people, each under a name."
+            "The examples do not name the people who perform them, so the model cannot learn how people differ: "
+            "record at least two people, and give the name of each."
         )
     elif len(contents.people) == 1:
         who = next(iter(contents.people))
-        yield f"All examples are of {who}: record {MIN_EXAMPLES} examples of each action by a second person."
+        yield (
+            f"All examples show the same person, {who}: record {MIN_EXAMPLES} examples of each action, performed by a "
+            "second person."
+        )
 
 
 def _background(contents: Contents) -> Iterator[str]:
@@ -163,8 +169,8 @@ def _false_alarms(found: ContinuousScores) -> Iterator[str]:
     false = {label: score.detections - score.right for label, score in found.per_action.items()}
     worst = max(false, key=lambda label: false[label])
     yield (
-        f"The test gave {found.false_per_min:.1f} false alarms a minute, most often {worst}: record more background "
-        f"(people who do none of the actions) with movements that resemble {worst}."
+        f"The test gave {found.false_per_min:.1f} false alarms a minute, most often of {worst}: record more "
+        f"background (people who do none of the actions) with movements that resemble {worst}."
     )
 
 
@@ -173,7 +179,7 @@ def _seldom_found(found: ContinuousScores) -> Iterator[str]:
         if score.truths >= FEWEST_DONE and score.recall < LOW_RECALL:
             yield (
                 f"The test found only {score.right} of {score.truths} performances of {label}: record more examples "
-                f"of {label}, with a second of rest before and after each."
+                f"of {label}, with one second of rest before and after each example."
             )
 
 

@@ -39,8 +39,8 @@ def with_continuation(
     posture, contrast = model.metadata.posture, model.metadata.centre_contrast
     if (posture.axes, posture.origin) != ("upright", "torso"):
         raise TrainingError(
-            f"a model with axes={posture.axes} and origin={posture.origin} cannot predict how a posture goes on: use "
-            "axes=upright and origin=torso"
+            f"a model with axes={posture.axes} and origin={posture.origin} cannot predict later postures: train a "
+            "model with axes=upright and origin=torso"
         )
     instants, no_shares = instants_of(streams), np.zeros((2, len(STEPS)), np.float32)
     untrained = AssociativeSom.untrained(len(model.layer1.weights))

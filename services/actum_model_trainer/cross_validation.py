@@ -26,10 +26,10 @@ def people_of(recordings: Sequence[Recording]) -> list[str]:
     """
     people = sorted({recording.person for recording in recordings})
     if len(people) < 2:
+        known = f"only {people[0]}" if any(people) else "nobody"
         raise TrainingError(
-            "recordings of at least two people are needed, because each person is tested with a model trained on the "
-            f"others; the given recordings name {f'only {people[0]}' if any(people) else 'nobody'}: record another "
-            "person, with --person NAME"
+            "each person is tested with a model trained on the others, so recordings of at least two people are "
+            f"needed. The given recordings name {known}: record another person with --person NAME"
         )
     return people
 

@@ -55,7 +55,8 @@ class KeptWindows:
         """
         if f"{KEPT}window_coordinates" not in arrays:
             raise KeptError(
-                f"the model file does not contain the windows from which a new action would be learnt: {TRAIN_AGAIN}"
+                "the model file does not contain the training data of the search for unmarked actions, which adding "
+                f"an action needs: {TRAIN_AGAIN}"
             )
         with _naming_damage():
             coordinates = arrays[f"{KEPT}window_coordinates"].astype(np.float32)
@@ -143,7 +144,9 @@ def kept_data(arrays: Arrays, model: PyramidModel) -> TrainingData:
         assert pooled is not None and features is not None
         inputs = len(pooled.directions), len(features.directions)
         if data.labels != model.labels or inputs != (model.stages.axes.shape[1], len(model.opinion.axes)):
-            raise KeptError(f"the file's training data fits another model (other actions or sizes): {TRAIN_AGAIN}")
+            raise KeptError(
+                f"the training data in the file does not fit the model (other actions or other sizes): {TRAIN_AGAIN}"
+            )
         _expect_whole(data, pooled, features)
     return data
 
@@ -169,9 +172,9 @@ def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
     _expect("convolved_background", data.convolved.background, (len(data.background), features.rank))
 
 
-def _expect(name: str, array: NDArray[Any], shape: tuple[int, ...]) -> None:
-    if array.shape != shape:
-        raise ValueError(f"the array {name} has shape {array.shape}; expected {shape}")
+def _expect(name: str, array: NDArray[Any], expected: tuple[int, ...]) -> None:
+    if array.shape != expected:
+        raise ValueError(f"the array {name} has shape {array.shape}; expected {expected}")
 
 
 @contextmanager

@@ -28,9 +28,10 @@ def actions_of(samples: Sequence[SegmentSample]) -> list[str]:
     """
     labels = sorted({sample.label for sample in samples})
     if len(labels) < 2:
-        there = f"examples of only one action, {labels[0]!r}" if labels else "no usable examples"
+        examples = f"examples of only one action, {labels[0]!r}" if labels else "no usable examples"
         raise TrainingError(
-            f"a model needs examples of at least two actions, but the recordings contain {there}: record more actions"
+            f"a model needs examples of at least two actions, but the recordings contain {examples}: record more "
+            "actions"
         )
     return labels
 

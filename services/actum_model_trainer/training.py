@@ -92,7 +92,7 @@ def with_continuation(
     continuing = CONTINUATIONS.get(model.metadata.kind)
     if continuing is None:
         raise TrainingError(
-            f"models of kind {model.metadata.kind!r} cannot predict how a posture goes on: train a model of preset "
+            f"models of kind {model.metadata.kind!r} cannot predict later postures: train a model of preset "
             f"{' or '.join(PRESETS)}"
         )
     with threadpool_limits(1, user_api="blas"):
@@ -176,8 +176,8 @@ def _added(
     adding_to, preset = ADDITIONS.get(model.metadata.kind), PRESETS.get(model.metadata.preset)
     if adding_to is None or preset is None:
         raise TrainingError(
-            f"no action can be added to a model of preset {model.metadata.preset}: train a model from recordings of "
-            "all its actions"
+            f"no action can be added to a model of preset {model.metadata.preset}: train a new model from recordings "
+            "of the old and the new actions"
         )
     with threadpool_limits(1, user_api="blas"):
         return adding_to(model, kept, samples, streams, digest, preset, seed, progress)

@@ -140,14 +140,14 @@ def load(path: Path) -> Catalogue:
 def _from_scene(path: Path, root: yaml.Node, scene: SceneFile) -> Catalogue:
     markers: dict[Key, MountedMarker] = {}
     for location, key, mounted in _mounted_markers(path, root, scene):
-        owner = markers.get(key)
+        owner, (family_name, marker_id) = markers.get(key), key
         if owner is not None:
             raise _refusal(
                 path,
                 root,
                 location,
-                f"object {owner.object_id} has marker {key[1]} of the family {key[0]} already: give object "
-                f"{mounted.object_id} another marker",
+                f"marker {marker_id} of the family {family_name} already belongs to object {owner.object_id}: give "
+                f"object {mounted.object_id} another marker",
             )
         markers[key] = mounted
     families = tuple(sorted({name for name, _ in markers}))
@@ -167,12 +167,12 @@ def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[
             name = marker.family or entry.family or scene.family
             size_m = marker.size_m or entry.size_m or scene.size_m
             if name is None or size_m is None:
-                lacking = "family" if name is None else "size_m"
+                field = "family" if name is None else "size_m"
                 raise _refusal(
                     path,
                     root,
                     location,
-                    f"`{lacking}` is missing: set it in this entry or at the top level of the file",
+                    f"`{field}` is missing: add `{field}` to this entry or to the top level of the file",
                 )
             ids = len(family(name).codes)
             if marker.id >= ids:

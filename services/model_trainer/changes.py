@@ -41,7 +41,7 @@ def on_disk() -> Iterator[None]:
     try:
         yield
     except (OSError, RecordingError) as error:
-        raise Refusal(f"{plain(error)}; nothing was changed") from None
+        raise Refusal(f"{file_problem(error)}; nothing was changed: solve this problem, then try again") from None
 
 
 def refusing(command: Command[Any, Any]) -> Command[Any, Any]:
@@ -52,12 +52,12 @@ def refusing(command: Command[Any, Any]) -> Command[Any, Any]:
         try:
             return command.handler(request)
         except (OSError, RecordingError) as error:
-            raise Refusal(f"{plain(error)}: repair the file or folder, and try again") from None
+            raise Refusal(f"{file_problem(error)}: repair the file or folder, and try again") from None
 
     return replace(command, handler=handler)
 
 
-def plain(error: Exception) -> str:
+def file_problem(error: Exception) -> str:
     """Say what is wrong with a file without the number of the system's error."""
     if isinstance(error, OSError) and error.strerror:
         return ": ".join([*([str(error.filename)] if error.filename else []), error.strerror])

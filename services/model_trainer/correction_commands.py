@@ -43,16 +43,16 @@ class CorrectionCommands:
         """Add an event of the last ten minutes to a set: as an example of an action, or as none of the actions."""
         if not 0 < request.end_ns - request.start_ns <= MAX_SEGMENT_NS:
             raise Refusal(
-                f"end_ns has to be later than start_ns, by at most {MAX_SEGMENT_NS // SECOND_NS} s: copy both from an "
-                "event or from a held_back message"
+                f"end_ns has to be later than start_ns, but by at most {MAX_SEGMENT_NS // SECOND_NS} s: copy both "
+                "values from the same event or held_back message"
             )
         self._sets.folder(request.set)
         frames = list(self._recent.of(request.agent, request.start_ns, request.end_ns))
         if len(frames) < FEWEST_FRAMES:
             raise Refusal(
                 f"only {len(frames)} frames of person {request.agent} in this event are still stored, but at least "
-                f"{FEWEST_FRAMES} are needed: correct an event within {LONGEST_S / 60:.0f} minutes, and before the "
-                "sensor or the trainer restarts"
+                f"{FEWEST_FRAMES} are needed: correct an event within {LONGEST_S / 60:.0f} minutes after it ends, and "
+                "before the sensor or the trainer restarts"
             )
         first, last = frames[0], frames[-1]
         label = request.label or NONE
@@ -70,8 +70,8 @@ class CorrectionCommands:
             for each in take.examples if is_correction(take) else []:
                 if (each.agent, each.bounds_ns) == (request.agent, bounds_ns):
                     raise Refusal(
-                        f"this event is already an example of {each.label!r} in the set {request.set}: delete this "
-                        "example on the panel 'Teach' first"
+                        f"this event is already an example of {each.label!r} in the set {request.set}: to correct the "
+                        "event again, first delete that example in the panel 'Teach'"
                     )
 
 

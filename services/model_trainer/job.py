@@ -16,7 +16,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from actum.commands import Refusal
-from actum.installing import adding
+from actum.installing import install_command
 from actum.messages import is_action
 from actum.recording import Recording, RecordingError
 from actum.runtime.stopping import end_with_parent
@@ -145,7 +145,7 @@ def main() -> None:
     except (Refusal, TrainingError, RecordingError, NoSpotterError, ModelError, OSError) as error:
         print_line(error=str(error))
     except ModuleNotFoundError as error:
-        print_line(error=f"{error.name} is not installed: {adding('camera')}")
+        print_line(error=f"{error.name} is not installed: run {install_command('camera')}")
 
 
 def _snapshot(arguments: Arguments) -> Path:

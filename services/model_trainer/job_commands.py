@@ -138,7 +138,8 @@ class JobCommands:
         """Start a job; an upload goes into its folder, where nobody can replace it, and is deleted with that."""
         if self._running is not None and self._job is not None:
             raise Refusal(
-                f"{KINDS[self._job.kind]} is already running ({self._job.id}): wait until this job ends, or cancel it"
+                f"the job {self._job.id} ({KINDS[self._job.kind]}) is still running: wait until this job ends, or "
+                "cancel it"
             )
         takes = self._sets.folder(set_name)
         with on_disk():

@@ -120,7 +120,10 @@ class ModelStore:
         """
         before = self.before
         if not before:
-            raise Refusal("there is no previous model to return to")
+            raise Refusal(
+                "no model was in use before this one, so there is no model to return to: choose a model with the "
+                "command 'activate'"
+            )
         self.activate(before[-1])
         self._remember(before[:-1])
 
@@ -132,7 +135,7 @@ class ModelStore:
         """
         path = self.get(model_id).path
         if model_id == self.active:
-            raise Refusal(f"model {model_id} is in use: use another model first, then delete this one")
+            raise Refusal(f"model {model_id} is in use: use another model first, then delete this model")
         path.unlink()
         path.with_suffix(".json").unlink(missing_ok=True)
 
@@ -193,8 +196,8 @@ class ModelStore:
             model_id = load_model(place).id
         except ModelError:
             raise Refusal(
-                f"{place} cannot be read as a model and would be overwritten: move this file to another folder, then "
-                "try again"
+                f"the file {place} cannot be read as a model and would be overwritten: move this file to another "
+                "folder, then try again"
             ) from None
         self._keep_copy(place, model_id)
 

@@ -122,8 +122,8 @@ class SetStore:
             Refusal: there is none of that name.
         """
         if name not in self.names():
-            there = ", ".join(self.names()) or "none yet"
-            raise Refusal(f"there is no set {name!r}: use an existing set ({there}), or create this set")
+            existing = ", ".join(self.names()) or "none yet"
+            raise Refusal(f"there is no set {name!r}: use an existing set ({existing}), or create this set")
         return self._folder / name
 
     def create(self, name: str) -> None:
@@ -191,17 +191,17 @@ class SetStore:
     def _refuse_unusable(self, name: str, renamed: str | None = None) -> None:
         if name.partition(".")[0].rstrip().casefold() in DEVICES:
             raise Refusal(f"{name!r} is reserved for a device on Windows: choose another name")
-        for there in self.names():
-            if there.casefold() == name.casefold() and there != renamed:
-                raise Refusal(f"there is already a set {there!r}: choose another name")
+        for existing in self.names():
+            if existing.casefold() == name.casefold() and existing != renamed:
+                raise Refusal(f"there is already a set {existing!r}: choose another name")
 
     def _take(self, path: Path) -> Take:
         """Read a take, or return what was read of it before where the file is still the same."""
         if path.exists() and not path.is_file():
             raise RecordingError(
                 path,
-                "a folder or a device stands where a recording file must be",
-                "move the folder or device out of the folder of the set",
+                "the path names a folder or a device, not a recording file",
+                "move this folder or device out of the folder of the set",
             )
         stat = path.stat()
         version = stat.st_mtime_ns, stat.st_size
@@ -213,7 +213,8 @@ class SetStore:
             raise RecordingError(
                 path,
                 f"the recording has {count} actions with a start and an end; at most {MOST_SEGMENTS} are allowed",
-                "delete some of these actions with 'actum label delete', or record them in several shorter recordings",
+                "delete some of these actions with 'actum label delete', or record the actions in several shorter "
+                "recordings",
             )
         self._read[path] = version, take
         return take

@@ -95,7 +95,7 @@ class TakeCommands:
             return self._finish()
         except LOSING as error:
             self._give_up()
-            raise Refusal(f"the recording could not be stored and is lost: {error}") from None
+            raise Refusal(f"the recording could not be stored and is lost ({error}): record again") from None
 
     def _discard(self, _: NoFields) -> Done:
         """Drop the take that is being recorded."""
@@ -108,7 +108,10 @@ class TakeCommands:
         self._refuse_recording()
         takes = [take for take in self._sets.get(request.set).takes if take.labels and not is_correction(take)]
         if not takes:
-            raise Refusal(f"the set {request.set} contains no recorded action to repeat yet: record one first")
+            raise Refusal(
+                f"the set {request.set} contains no recording of an action yet, so there is nothing to repeat: record "
+                "an action first"
+            )
         newest = max(takes, key=lambda take: (take_number(take.id), take.created, take.id))
         label, count = newest.labels[-1], min(len(newest.labels), MOST_REPETITIONS)
         try:

@@ -34,11 +34,11 @@ class UploadStore:
         self._folder.mkdir(parents=True, exist_ok=True)
         unfinished = self._folder / f".{name}{UNFINISHED}"
         sizes = {file.name: file.stat().st_size for file in self._folder.iterdir()}
-        there = sizes.pop(unfinished.name, 0)
-        if offset not in (0, there):
+        arrived = sizes.pop(unfinished.name, 0)
+        if offset not in (0, arrived):
             raise Refusal(
-                f"this piece of {name} has the offset {offset}, but {there} bytes of the file have arrived: continue "
-                f"at offset {there}, or start again at offset 0"
+                f"this piece of {name} has the offset {offset}, but {arrived} bytes of the file have arrived: continue "
+                f"at offset {arrived}, or start again at offset 0"
             )
         size = offset + len(data)
         if size > MOST_BYTES:
@@ -46,9 +46,9 @@ class UploadStore:
         total, files = sum(sizes.values()) + size, len(sizes.keys() | {name})
         if total > MOST_TOTAL_BYTES or files > MOST_FILES:
             raise Refusal(
-                f"{name} cannot be stored: {files} files with {total} bytes would then wait to be imported, but at "
-                f"most {MOST_FILES} files with {MOST_TOTAL_BYTES} bytes may wait: import some files first, or restart "
-                "the service, which deletes the waiting files"
+                f"{name} cannot be stored, because {files} files with {total} bytes would wait to be imported; at "
+                f"most {MOST_FILES} files with {MOST_TOTAL_BYTES} bytes may wait. Import some of the waiting files "
+                "first, or restart the service, which deletes all waiting files"
             )
         with unfinished.open("ab" if offset else "wb") as file:
             file.write(data)

@@ -40,19 +40,20 @@ def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bon
         if not _NEEDED.isdisjoint(names) or not any(pair.isdisjoint(names) for pair in _PAIRS):
             raise BadFrameError("missing_joint", f"these joints are missing: {', '.join(names)}")
     if not (np.abs(joints) <= reach_limit_m).all():
-        known = [i for i in range(len(JOINTS)) if i not in missing]
-        for i in known:
-            if not np.isfinite(joints[i]).all():
-                raise BadFrameError("not_finite", f"a coordinate of {JOINTS[i]} is NaN or infinite")
-        for i in known:
-            if np.abs(joints[i]).max() > reach_limit_m:
+        known = {joint: joints[i] for i, joint in enumerate(JOINTS) if i not in missing}
+        for joint, place_m in known.items():
+            if not np.isfinite(place_m).all():
+                raise BadFrameError("not_finite", f"a coordinate of {joint} is NaN or infinite")
+        for joint, place_m in known.items():
+            if np.abs(place_m).max() > reach_limit_m:
                 raise BadFrameError(
                     "absurd_joint",
-                    f"{JOINTS[i]} is further from the camera than the setting reach_limit_m, {reach_limit_m:g} m",
+                    f"{joint} is further from the camera than {reach_limit_m:g} m, the limit that reach_limit_m sets",
                 )
     _, lengths2 = bones_of(joints)
     if np.fmax.reduce(lengths2) > bone_limit_m**2:
         child = JOINTS[_CHILDREN[int(np.nanargmax(lengths2))]]
         raise BadFrameError(
-            "absurd_bone", f"the bone that ends at {child} is longer than the setting bone_limit_m, {bone_limit_m:g} m"
+            "absurd_bone",
+            f"the bone that ends at {child} is longer than {bone_limit_m:g} m, the limit that bone_limit_m sets",
         )

@@ -39,7 +39,9 @@ def segment_of(payload: bytes, sensor: str) -> Segment:
         )
     unknown = [name for name in fields if name not in FIELDS]
     if unknown:
-        raise BadMarkError(f"{unknown[0]!r} is not a field of a message that marks an action: use {', '.join(FIELDS)}")
+        raise BadMarkError(
+            f"{unknown[0]!r} is not a field of a message that marks an action: use one or more of {', '.join(FIELDS)}"
+        )
     try:
         return Segment.model_validate({**fields, "sensor": sensor})
     except ValidationError as error:

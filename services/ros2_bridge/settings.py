@@ -99,8 +99,8 @@ class Settings(ServiceSettings):
     def _says_in_which_frame_bodies_are(self) -> "Settings":
         if self.ros_bodies and self.ros_frame_id is None:
             raise ValueError(
-                "--ros-bodies needs --ros-frame-id: give the name of the optical frame of the camera that sees the "
-                "bodies, as your robot's tf tree has it, such as camera_color_optical_frame"
+                "--ros-bodies needs --ros-frame-id: set --ros-frame-id to the optical frame of the camera that sees "
+                "the bodies, as named in your robot's tf tree, such as camera_color_optical_frame"
             )
         return self
 

@@ -154,8 +154,8 @@ class DrivenSimulator(Simulator):
             )
         if len(self._waiting) >= MOST_WAITING:
             raise Refusal(
-                f"{MOST_WAITING} requests to the simulated person are already waiting, and no more can wait: try again "
-                "after the person has carried out some of them"
+                f"{MOST_WAITING} requests are already waiting for the simulated person, and no more are accepted: try "
+                "again when the person has carried out some of these requests"
             )
         try:
             programme_of(request)

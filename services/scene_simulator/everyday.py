@@ -51,7 +51,8 @@ class Everyday:
         unknown = [kind for kind in self.kinds if kind not in ALL]
         if unknown or not self.kinds:
             raise ValueError(
-                f"{', '.join(unknown) or 'an empty list'} is not an everyday activity: use some of {', '.join(ALL)}"
+                f"{', '.join(unknown) or 'an empty list'} is not an everyday activity: use one or more of "
+                f"{', '.join(ALL)}"
             )
 
 

@@ -154,7 +154,7 @@ def _depth_source(settings: Settings, session_id: str, live: Callable[[], Captur
     optics = _depth_optics(settings)
     if path is not None and not path.is_file():
         raise DepthSourceError(
-            f"there is no recording {path}: correct --path (ACTUM_PATH), or omit --path to use a camera"
+            f"there is no recording {path}: correct --path (ACTUM_PATH), or leave out --path to use a camera"
         )
     return CameraSource(
         lambda: estimator_of(settings),

@@ -51,10 +51,8 @@ class PostureInput:
 
     def __post_init__(self) -> None:
         for name, choices in CHOICES.items():
-            if getattr(self, name) not in choices:
-                raise ValueError(
-                    f"{getattr(self, name)!r} is not a valid value of {name}: use one of {', '.join(choices)}"
-                )
+            if (value := getattr(self, name)) not in choices:
+                raise ValueError(f"{value!r} is not a valid value of {name}: use one of {', '.join(choices)}")
 
     @property
     def size(self) -> int:

@@ -46,9 +46,9 @@ class MapContinuation(Continuation):
         units, shares = self.association.changes.shape[1], (2, len(STEPS))
         if units != len(self.som.weights) or self.shares.shape != shares or not np.isfinite(self.shares).all():
             raise ValueError(
-                f"the prediction of postures does not fit the map: it has associations of {units} units and weights of "
-                f"shape {self.shares.shape}; expected {len(self.som.weights)} units and, without gaps, weights of "
-                f"shape {shares}"
+                f"the prediction of postures does not fit the map: the associations are of {units} units, the weights "
+                f"have shape {self.shares.shape}; expected {len(self.som.weights)} units and finite weights of shape "
+                f"{shares}"
             )
 
     @classmethod

@@ -58,14 +58,14 @@ def load_model(path: Path) -> Model:
     """
     try:
         if path.exists() and not path.is_file():
-            raise ModelError(path, "the path names a folder or a device, not a file")
+            raise ModelError(path, "the path names a folder or a device, not a model file")
         with path.open("rb") as stored:
             metadata, arrays = _parts(path, stored)
         return _restored(path, metadata, arrays)
     except ModelError:
         raise
     except FileNotFoundError:
-        raise ModelError(path, "the file does not exist") from None
+        raise ModelError(path, "the model file does not exist") from None
     except (*UNREADABLE, AttributeError) as error:
         raise ModelError(path, f"the file is not a model of actum, or is damaged ({_problem(error)})") from None
 
@@ -75,14 +75,17 @@ def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
     about = json.loads(metadata)
     kind, made_by = about.get("kind"), str(about.get("actum_version"))
     if kind not in KINDS:
-        raise ModelError(path, f"the model is of kind {kind!r}, which this version of actum does not know")
+        raise ModelError(path, f"the model is of kind {kind!r}, which this version of actum does not support")
     try:
         return KINDS[kind].restored(metadata, arrays)
     except UNREADABLE as error:
         if made_by == __version__ or not VERSION.fullmatch(made_by):
             raise
-        problem = f"actum {made_by} made the model, and actum {__version__} cannot use it ({_problem(error)})"
-        raise ModelError(path, problem, "train a new model from the same recordings") from None
+        raise ModelError(
+            path,
+            f"actum {made_by} made the model, and actum {__version__} cannot use it ({_problem(error)})",
+            "train a new model from the same recordings",
+        ) from None
 
 
 def _problem(error: Exception) -> str:

@@ -45,10 +45,12 @@ class RegressedContinuation(Continuation):
 
     def __post_init__(self) -> None:
         rank = self.axes.shape[-1]
-        has = tuple(each.shape for each in (self.usual, self.directions, self.offsets, self.shares))
-        should = (INPUTS,), (rank, ANSWERS), (ANSWERS,), (2, len(STEPS))
-        if has != should:
-            raise ValueError(f"the model's arrays for predicting postures have the shapes {has}, not {should}")
+        shapes = tuple(each.shape for each in (self.usual, self.directions, self.offsets, self.shares))
+        expected = (INPUTS,), (rank, ANSWERS), (ANSWERS,), (2, len(STEPS))
+        if shapes != expected:
+            raise ValueError(
+                f"the model's arrays for predicting postures have the shapes {shapes}; expected {expected}"
+            )
 
     @classmethod
     def restored(cls, arrays: Mapping[str, NDArray[Any]]) -> "RegressedContinuation | None":

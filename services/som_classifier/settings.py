@@ -26,10 +26,9 @@ def _pairs(value: Any) -> Any:
     """
     if not isinstance(value, str):
         return value
-    if lacking := next((name for name in _names(value) if "=" not in name), None):
+    if entry := next((name for name in _names(value) if "=" not in name), None):
         raise ValueError(
-            f"{lacking!r} is not of the form ACTION=SECONDS: give each action a number of seconds, such as "
-            "wave=3,clap=1"
+            f"{entry!r} is not of the form ACTION=SECONDS: give each action a number of seconds, such as wave=3,clap=1"
         )
     return {action.strip(): seconds for action, _, seconds in (pair.rpartition("=") for pair in _names(value))}
 

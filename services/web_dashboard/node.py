@@ -76,7 +76,9 @@ class WebDashboard:
     def _report(self, tick: Tick) -> None:
         """Count what browsers were refused and did not get, and once a second report where the time goes."""
         if not self._server.working:
-            raise RuntimeError("the web server of the page stopped unexpectedly: see the messages before this one")
+            raise RuntimeError(
+                "the web server of the page stopped unexpectedly: see the log messages before this message"
+            )
         while self._orders.refused:
             self.counters.reject("refused_browser", self._orders.refused.popleft())
         if self._hub.left_out:

@@ -45,7 +45,10 @@ class Ask(BaseModel):
     @classmethod
     def _check_names(cls, fields: dict[str, Any]) -> dict[str, Any]:
         if taken := fields.keys() & OURS:
-            raise ValueError(f"a command cannot have fields with the reserved names {', '.join(sorted(taken))}")
+            raise ValueError(
+                f"a command cannot have the fields {', '.join(sorted(taken))}, because these names are reserved: "
+                "leave out these fields"
+            )
         return fields
 
 
@@ -107,8 +110,8 @@ class Orders:
             return self.refuse(order.id, str(error))
         except Exception:
             log.exception(
-                "a bug occurred in web_dashboard while it carried out a request of the page. The request may be done "
-                "only in part; web_dashboard continues to run. Report the bug with the lines that follow"
+                "a bug occurred in web_dashboard while it carried out a request from the page. The request may be "
+                "done only in part; web_dashboard continues to run. Report the bug with the lines that follow"
             )
             return self.refuse(
                 order.id,

@@ -37,7 +37,7 @@ def bound_socket(host: str, port: int | None) -> socket.socket:
             problem = error
     ports = f"port {port}" if port is not None else f"ports {PORTS.start} to {PORTS.stop - 1}"
     raise SettingsError(
-        f"the web page cannot be served at {host}, {ports} ({problem}): choose another --page-port or --page-host"
+        f"the web page cannot be served on {ports} of {host} ({problem}): choose another --page-port or --page-host"
     )
 
 

@@ -32,7 +32,7 @@ MATRICES = {"K": 3, "skeleton_from_image": 4}
 """The fields that are written row by row, and how many columns they have."""
 WIDTH = 120
 """Characters in a line of the file."""
-REMEDY = "make one with 'actum calibrate intrinsics'"
+CALIBRATION_REMEDY = "make a calibration with 'actum calibrate intrinsics'"
 """What to do about a file that cannot be used."""
 
 YAML_ERRORS = (yaml.YAMLError, ValueError, LookupError, ArithmeticError, AttributeError, TypeError, RecursionError)
@@ -92,10 +92,8 @@ class Calibration(_Part):
     @classmethod
     def _complete(cls, coefficients: list[float]) -> list[float]:
         if len(coefficients) not in DISTORTION_LENGTHS:
-            allowed = ", ".join(map(str, DISTORTION_LENGTHS))
-            raise ValueError(
-                f"there are {len(coefficients)} distortion coefficients; allowed numbers of coefficients are {allowed}"
-            )
+            allowed = " or ".join(map(str, DISTORTION_LENGTHS))
+            raise ValueError(f"there are {len(coefficients)} distortion coefficients; expected {allowed} coefficients")
         return coefficients
 
     @field_validator("skeleton_from_image")
@@ -147,15 +145,19 @@ class Calibration(_Part):
             with path.open("rb") as file:
                 content = yaml.safe_load(file.read(LARGEST_BYTES))
         except OSError as error:
-            raise CalibrationError(f"{path}: {error.strerror}; {REMEDY}") from None
+            raise CalibrationError(f"{path}: {error.strerror}; {CALIBRATION_REMEDY}") from None
         except YAML_ERRORS:
-            raise CalibrationError(f"{path} is not a calibration (the file is not YAML): {REMEDY}") from None
+            raise CalibrationError(
+                f"{path} is not a calibration (the file is not YAML): {CALIBRATION_REMEDY}"
+            ) from None
         try:
             return cls.model_validate(content)
         except ValidationError as error:
             problem = error.errors()[0]
             place = ".".join(map(str, problem["loc"])) or "the file"
-            raise CalibrationError(f"{path} is not a calibration ({place}: {problem['msg']}): {REMEDY}") from None
+            raise CalibrationError(
+                f"{path} is not a calibration ({place}: {problem['msg']}): {CALIBRATION_REMEDY}"
+            ) from None
 
     def save(self, path: Path) -> None:
         """Write the calibration file, replacing an existing one."""

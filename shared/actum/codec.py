@@ -213,7 +213,8 @@ def _validated(key: str, address: keys.Address, fields: dict[str, Any]) -> Messa
     if actual != key:
         raise DecodeError(
             "wrong_key",
-            f"the message came on the key {key}, but by its fields sensor, agent and service it belongs on {actual}",
+            f"the message arrived on the key {key}, but its fields sensor, agent and service belong to the key "
+            f"{actual}",
         )
     return message
 

@@ -143,7 +143,7 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
     except UNPACK_ERRORS as error:
         raise Refusal(
             f"the request cannot be decoded ({error}): send a JSON object, or a MessagePack map with the encoding "
-            f"{MSGPACK}, with each name once and at most {MOST_VALUES} values"
+            f"{MSGPACK}, with at most {MOST_VALUES} values and no field name twice"
         ) from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
         raise Refusal(
@@ -198,7 +198,7 @@ def _inner(value: Any) -> Iterator[Any]:
         case float() if not math.isfinite(value):
             raise Refusal(f"the request contains the number {value}: send finite numbers")
         case int() if value not in INTEGERS:
-            raise Refusal("the request contains an integer of more than 64 bits: send a smaller one")
+            raise Refusal("the request contains an integer of more than 64 bits: send a smaller integer")
         case None | str() | float() | int() | bytes():
             return
         case _:

@@ -42,7 +42,11 @@ class HealthFile:
             self._unwritable = False
         except (OSError, ValueError) as error:  # ValueError: a path that no file can have
             if not self._unwritable:
-                log.warning("the health file cannot be written: %s", error)
+                log.warning(
+                    "the health file cannot be written (%s): set ACTUM_HEALTH_FILE to a file that this service can "
+                    "write",
+                    error,
+                )
             self._unwritable = True
 
 

@@ -93,7 +93,7 @@ def _from_jpeg(image: Image, flags: int) -> Pixels:
         raise UnusableImageError(
             "image_size_mismatch",
             f"the JPEG has {size[0]}x{size[1]} pixels, but width and height of the image message are {image.width} "
-            f"and {image.height}",
+            f"and {image.height}: set both to the size of the JPEG",
         )
     if has_too_many_scans(image.data):
         raise UnusableImageError(

@@ -26,7 +26,7 @@ def pip_install(extras: str, origin: str = FOLDER, flag: str = "") -> str:
     return f"pip install {flag}{shlex.quote(f'{origin}[{extras}]')}"
 
 
-def adding(extras: str) -> str:
+def install_command(extras: str) -> str:
     """Return the command that adds extras to this installation, from the folder or the wheel that it came from."""
     from urllib.request import url2pathname  # it imports HTTP, which running services do without
 

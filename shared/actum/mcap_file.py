@@ -113,7 +113,7 @@ class McapFile:
                 raise RecordingError(self.path, "the path names a device or a pipe, not a file", REMEDY)
             file = self.path.open("rb")
         except OSError as error:
-            raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
+            raise RecordingError(self.path, f"the file cannot be read ({error.strerror or error})", REMEDY) from None
         if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
             file.close()
             raise RecordingError(self.path, "the file is not an MCAP file", REMEDY)
@@ -180,7 +180,10 @@ def _decompressed(chunk: Chunk) -> bytes:
         case "lz4":
             return bytes(lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most))
         case other:
-            raise ValueError(f"a block in the file is compressed with {other!r}; only zstd and lz4 can be read")
+            raise ValueError(
+                f"a block in the file is compressed with {other!r}, which actum cannot read: compress the file with "
+                "zstd or lz4"
+            )
 
 
 def encoding_of(channel: Channel, schema: str) -> str:

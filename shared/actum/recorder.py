@@ -61,12 +61,12 @@ def refuse_taken(path: Path) -> None:
         return
     stat = part.lstat()
     size, written = f"{stat.st_size / 1e6:.1f} MB", datetime.fromtimestamp(stat.st_mtime).strftime("%Y-%m-%d %H:%M:%S")
-    todo = (
+    remedy = (
         "another process is writing it: name another file"
         if is_being_written(part)
         else f"turn it into a recording with 'actum record {path} --finish', or remove it"
     )
-    raise TakenError(part, f"{part} is an unfinished recording ({size}, last written {written}): {todo}")
+    raise TakenError(part, f"{part} is an unfinished recording ({size}, last written {written}): {remedy}")
 
 
 def is_being_written(part: Path) -> bool:

@@ -139,7 +139,7 @@ class Recording:
         try:
             return self.path.stat().st_size
         except OSError as error:
-            raise RecordingError(self.path, error.strerror or str(error), REMEDY) from None
+            raise RecordingError(self.path, f"the file cannot be read ({error.strerror or error})", REMEDY) from None
 
     def _of_key(self, key: str) -> Iterator[StoredMessage]:
         return (stored for stored in self._file.stored() if stored.key == key)

@@ -44,9 +44,9 @@ def rewrite(
     """
     target = path.resolve()
     if target.suffix == UNFINISHED:
-        finished = path.with_suffix("")
+        name = path.with_suffix("")
         raise RecordingError(
-            path, "the recording is unfinished", f"finish the recording with 'actum record {finished} --finish'"
+            path, "the recording is unfinished", f"finish the recording with 'actum record {name} --finish'"
         )
     with replaced(target) as file:
         _copy(McapFile(path), file, change, added, metadata or {})
@@ -66,11 +66,11 @@ def finish(path: Path) -> int:
     with part.open("r+b") as claimed:  # to write, or a network file system gives no lock
         if not claim(claimed) or not os.path.samestat(os.fstat(claimed.fileno()), part.stat()):
             raise TakenError(
-                part, f"{part} is being written by another process: wait until that process ends, or stop it"
+                part, f"another process is writing {part}: wait until that process ends, or stop that process"
             )
         if os.path.lexists(path):
             raise TakenError(
-                path, f"{path} already exists, so {part} cannot get this name: rename one of the two files"
+                path, f"{path} already exists, so {part} cannot be renamed to {path}: rename one of the two files"
             )
         with created(path) as file:
             count = _copy(McapFile(part), file, unchanged, (), {})

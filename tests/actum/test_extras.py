@@ -5,7 +5,7 @@ import sys
 
 import pytest
 
-from actum.installing import adding
+from actum.installing import install_command
 from actum.runtime import needs_extra
 from actum.runtime.serving import UNUSABLE
 
@@ -37,7 +37,7 @@ def test_a_service_without_its_extra_says_which_it_needs(service: str, package: 
     run = [sys.executable, "-c", WITHOUT, service, package]
     ended = subprocess.run(run, capture_output=True, text=True, check=False)
     assert ended.returncode == UNUSABLE
-    assert ended.stderr == f"{package} is not installed: {adding(extra)}\n"
+    assert ended.stderr == f"{package} is not installed: run {install_command(extra)}\n"
 
 
 def test_a_part_that_is_missing_of_what_is_installed_is_a_bug_and_crashes() -> None:

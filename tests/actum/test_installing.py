@@ -92,18 +92,20 @@ def test_what_came_from_a_wheel_or_a_folder_is_completed_from_it(
     origin = tmp_path / "a folder"
     origin.mkdir()
     came_from(url=origin.as_uri(), **written_by_pip)
-    assert shlex.split(installing.adding("view")) == ["pip", "install", *flags, f"{origin}[view]"]
+    assert shlex.split(installing.install_command("view")) == ["pip", "install", *flags, f"{origin}[view]"]
 
 
 @pytest.mark.parametrize("told", [{}, {"url": "https://example.org/actum.git"}, {"url": "file:///build"}])
 def test_where_the_origin_is_gone_the_repository_is_named(came_from: Tell, told: dict[str, str]) -> None:
     came_from(**told)
-    assert installing.adding("view") == "pip install '.[view]' in the folder of actum's repository"
+    assert installing.install_command("view") == "pip install '.[view]' in the folder of actum's repository"
 
 
 def test_one_line_publishes_it(came_from: Tell, monkeypatch: pytest.MonkeyPatch) -> None:
     came_from()
     monkeypatch.setattr(installing, "INDEX_NAME", "an-actum")
     assert (
-        installing.adding("view") == installing.pip_install("view", installing.WHEEL) == "pip install 'an-actum[view]'"
+        installing.install_command("view")
+        == installing.pip_install("view", installing.WHEEL)
+        == "pip install 'an-actum[view]'"
     )

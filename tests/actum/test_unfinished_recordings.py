@@ -177,7 +177,7 @@ def test_what_a_killed_process_left_becomes_a_recording(tmp_path: Path) -> None:
 def test_what_a_process_is_writing_is_not_finished(tmp_path: Path) -> None:
     path = tmp_path / "a.mcap"
     with recording(path):
-        with pytest.raises(FileExistsError, match="is being written by another process"):
+        with pytest.raises(FileExistsError, match="another process is writing"):
             finish(path)
         assert [file.name for file in tmp_path.iterdir()] == ["a.mcap.part"]
 
@@ -188,7 +188,7 @@ def test_what_cannot_be_finished_stays_as_it_is(tmp_path: Path) -> None:
     with full_disk(1000), pytest.raises(OSError):
         finish(path)
     path.write_bytes(b"mine")
-    with pytest.raises(FileExistsError, match=r"a\.mcap already exists, so .*a\.mcap\.part cannot get this name"):
+    with pytest.raises(FileExistsError, match=r"a\.mcap already exists, so .*a\.mcap\.part cannot be renamed to"):
         finish(path)
     assert path.read_bytes() == b"mine"
     path.unlink()

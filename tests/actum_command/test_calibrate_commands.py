@@ -118,7 +118,7 @@ def test_broken_and_foreign_pictures_are_named(folder: Path, tmp_path: Path) -> 
     [
         (["--board", "7by5"], "write COLUMNSxROWS, such as 7x5"),
         (["--family", "DICT"], "not a marker family"),
-        (["--live"], "give either pictures of the board, or --live"),
+        (["--live"], "give either pictures of the board or --live"),
     ],
 )
 def test_impossible_options_are_refused(folder: Path, tmp_path: Path, options: list[str], reason: str) -> None:

@@ -123,7 +123,7 @@ def test_what_cannot_be_used_is_refused_by_name(command: str, content: str | Non
     [
         ("simulator", "--source recording"),
         ("none", "--source recording"),
-        ("camera", "set ACTUM_CAMERA to this video file"),
+        ("camera", "leave out --path. To read a video file, set ACTUM_CAMERA to that file"),
     ],
 )
 def test_a_file_is_not_passed_over_by_a_source_that_plays_none(
@@ -169,7 +169,7 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     assert invoke("simulate", tmp_path / "a.mcap", "--repetitions", "2").exit_code == 0
     trained = invoke("train", tmp_path / "a.mcap", "-o", tmp_path / "m.npz")
     assert "10 samples of 5 actions" in " ".join(trained.output.split())
-    assert "Few examples: " in trained.output
+    assert "Too few examples: " in trained.output
     assert "There are only 14 s of background" in " ".join(trained.output.split())
     report = tmp_path / "report.json"
     command = ["evaluate", tmp_path / "m.npz", tmp_path / "a.mcap", "--json", report]
@@ -415,7 +415,7 @@ def test_who_waits_for_a_router_says_so_once(
     monkeypatch.setattr(terminal, "Client", opened)
     terminal.connect_whenever()
     assert tried == [0, float("inf")]
-    assert capsys.readouterr().out == f"there is no router at {ServiceSettings().connect} yet: waiting for one\n"
+    assert capsys.readouterr().out == f"there is no router at {ServiceSettings().connect} yet: waiting for a router\n"
 
 
 @pytest.fixture

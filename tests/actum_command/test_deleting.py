@@ -97,7 +97,7 @@ def test_the_frames_follow_a_mirrored_segment_that_is_moved(path: Path) -> None:
 
 def test_a_mirrored_segment_does_not_reach_into_a_plain_one(path: Path) -> None:
     by_trainer(path, "mirror", "three")
-    assert "because three is mirrored" in refused("label", "move", path, "three", "--start", f"-{10 * FRAME_NS / 1e9}")
+    assert "segment three is mirrored" in refused("label", "move", path, "three", "--start", f"-{10 * FRAME_NS / 1e9}")
 
 
 def test_nothing_is_mirrored_once_its_segment_is_deleted(path: Path) -> None:

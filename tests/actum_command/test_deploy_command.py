@@ -64,14 +64,14 @@ def test_revoked_credentials_get_another_name_and_keep_it_when_init_is_run_again
 
 def test_what_was_revoked_is_not_forgotten_with_the_file_that_says_so(lab: Path) -> None:
     (lab / "deployment.json").unlink()
-    assert "delete authority/" in refusal("init", lab, *HOSTS)
+    assert "delete the folder authority/" in refusal("init", lab, *HOSTS)
 
 
 @pytest.mark.parametrize("name", ["router.camera", "gateway.kinect9", "page", "viewer#1", ""])
 def test_who_is_nobody_or_a_router_cannot_be_revoked(name: str, lab: Path) -> None:
     before = (lab / "deployment.json").read_text()
     said = refusal("rotate", lab, "--revoke", name)
-    assert "page.kinect0" in said and "delete authority/" in said
+    assert "page.kinect0" in said and "delete the folder authority/" in said
     assert (lab / "deployment.json").read_text() == before
 
 
@@ -94,10 +94,13 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("init", "--hosts", "camera=a"), "give camera=ADDRESS and compute=ADDRESS"),
-        (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords exclude each other"),
-        (("init", *HOSTS, "--ros-bodies", "camera"), "--ros-bodies needs --ros2 and a single camera host"),
-        (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "camera", "--simulate"), "excludes --simulate"),
+        (("init", "--hosts", "camera=a"), "name at least one camera host and one compute host"),
+        (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords cannot be used together"),
+        (
+            ("init", *HOSTS, "--ros-bodies", "camera"),
+            "--ros-bodies works only with --ros2, with exactly one camera host",
+        ),
+        (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "camera", "--simulate"), "without --simulate"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", ""), "'' is not the name of a frame"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "a\nExecStart=b"), "is not the name of a frame"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", 'the "camera"'), "is not the name of a frame"),

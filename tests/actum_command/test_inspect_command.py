@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from matplotlib.image import imread
 
-from actum.installing import adding
+from actum.installing import install_command
 from actum_model_inspector.folder import LIST
 from command_lines import invoke, refused, written
 from people import FRAME_NS
@@ -129,7 +129,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
     foreign = tmp_path / "foreign.npz"
     foreign.write_bytes(b"PK not a model")
     assert "actum train" in refusal(foreign, "-o", tmp_path / "out")
-    assert "the file does not exist" in refusal(tmp_path / "none.npz", "-o", tmp_path / "out")
+    assert "the model file does not exist" in refusal(tmp_path / "none.npz", "-o", tmp_path / "out")
     assert "png, svg" in refusal(tmp_path / "m.npz", "-o", tmp_path / "out", "--format", "bmp")
     assert "no recordings" in refusal(tmp_path / "m.npz", tmp_path, "-o", tmp_path / "out")
     assert "foreign.npz is not a folder" in refusal(tmp_path / "m.npz", "-o", foreign)
@@ -168,4 +168,4 @@ def test_segments_without_labels_are_shown_by_their_answers(tmp_path: Path) -> N
 def test_without_matplotlib_the_remedy_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     tiny_model().save(tmp_path / "m.npz")
     monkeypatch.setattr("actum_command.commands.terminal.find_spec", lambda name: None)
-    assert adding("model-inspector") in refusal(tmp_path / "m.npz", "-o", tmp_path / "out")
+    assert install_command("model-inspector") in refusal(tmp_path / "m.npz", "-o", tmp_path / "out")

@@ -148,17 +148,17 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
         (("move", 0, "--start", "1"), "there is no segment '0'"),
         (
             ("move", 1, "--start", "2", "--end", "1.5"),
-            "last from 2.00 to 1.50 s: its end has to be at least",
+            "extend from 2.00 to 1.50 s, which is too short: set the end at least",
         ),
-        (("move", 1, "--end", "+3"), r"1.20 to 5.57 s and overlap segment second \(3.80 to 5.17 s\)"),
-        (("move", 1, "--start", "-9"), "for which the recording has frames"),
-        (("move", 1, "--end", "3600"), "for which the recording has frames"),
+        (("move", 1, "--end", "+3"), r"1.20 to 5.57 s and overlap the segment second \(3.80 to 5.17 s\)"),
+        (("move", 1, "--start", "-9"), "but the recording has frames only from 0 to"),
+        (("move", 1, "--end", "3600"), "but the recording has frames only from 0 to"),
         (("delete", "frst"), "no segment 'frst' in .*anna.mcap: did you mean first"),
         (("move", 1, "--start", "soon"), "'soon' is not a time"),
         (("move", 1, "--start", "nan"), "'nan' is not a time"),
-        (("add", 2.0, 3.0, "wave"), "overlap segment first"),
+        (("add", 2.0, 3.0, "wave"), "overlap the segment first"),
         (("relabel", 1, ""), "the label must have 1 to 200 characters"),
-        (("cut", 5, "wave"), "overlap segment first"),
+        (("cut", 5, "wave"), "overlap the segment first"),
     ],
 )
 def test_what_cannot_be_done_is_refused_and_changes_nothing(

@@ -122,7 +122,7 @@ def test_what_waits_for_a_router_ends_even_where_its_supervisor_is_killed(
         supervising = subprocess.Popen(
             [sys.executable, "-c", SUPERVISING, *program], stdout=output, stderr=subprocess.STDOUT
         )
-    wait_until(lambda: log.read_text().endswith("waiting for one\n"), "the child runs")
+    wait_until(lambda: log.read_text().endswith("waiting for a router\n"), "the child runs")
     child = int(log.read_text().split()[0])
     assert runs(child)
     supervising.kill()

@@ -87,7 +87,7 @@ def test_what_cannot_be_tuned_is_refused_before_the_work(desk: Desk, tmp_path: P
     (tmp_path / "own.toml").write_text('model = "m.npz"\n')
     assert "also sets model" in refused("tune", desk.model, desk.third, "-o", tmp_path / "own.toml")
     assert "does not end in .toml" in refused("tune", desk.model, desk.third, "-o", tmp_path / "own.txt")
-    assert "--false-alarms-per-min is 0; it has to be a number above 0" in refused(
+    assert "--false-alarms-per-min is 0: give a number above 0" in refused(
         "tune", desk.model, desk.third, "--false-alarms-per-min", 0
     )
 

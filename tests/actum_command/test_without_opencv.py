@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from actum.installing import adding
+from actum.installing import install_command
 
 WITHOUT = """
 import json, sys
@@ -50,7 +50,7 @@ def ended(scene: Path) -> dict[str, tuple[int, str, str]]:
 def test_what_needs_it_says_what_to_install(ended: dict[str, tuple[int, str, str]], name: str) -> None:
     code, _, errors = ended[name]
     assert code == 1
-    assert adding("actum-command") in errors
+    assert install_command("actum-command") in errors
 
 
 @pytest.mark.parametrize("command", WORKING)

@@ -111,7 +111,7 @@ def test_what_is_no_take_is_named(tmp_path: Path) -> None:
         take_files(tmp_path)
     path = take(tmp_path)
     path.write_text(path.read_text().replace("Bowl_x", "Pot_x"))
-    with pytest.raises(DatasetError, match="subject0_take0.csv does not hold a time stamp"):
+    with pytest.raises(DatasetError, match="subject0_take0.csv lacks the time stamp or a pose"):
         read_take(path, "kinect0")
     with pytest.raises(DatasetError, match="put the folder labels_subject_"):
         read_take(take(tmp_path).rename(tmp_path / "subject0_take7.csv"), "kinect0")
@@ -146,5 +146,5 @@ def test_numbers_of_what_the_cameras_lost_need_not_be_there(tmp_path: Path) -> N
 
 
 def test_labels_beyond_the_table_are_no_labels_of_it(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match="does not hold a time stamp and the poses"):
+    with pytest.raises(DatasetError, match="lacks the time stamp or a pose"):
         read_take(take(tmp_path, frames=4), "kinect0")

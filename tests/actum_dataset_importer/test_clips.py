@@ -148,5 +148,5 @@ def test_two_clips_of_one_name_are_refused_before_anything_is_written(other: str
 
 
 def test_an_action_that_is_not_told_is_refused() -> None:
-    with pytest.raises(DatasetError, match="finds no action in its name"):
+    with pytest.raises(DatasetError, match="finds no action in this file name"):
         Naming.of(r"(?P<action>[a-z]+)?_.*", "").read(Path("_anna.mp4"))

@@ -182,7 +182,7 @@ def test_a_mirrored_example_that_is_trimmed_is_mirrored_in_its_new_bounds(tmp_pa
 def test_a_mirrored_example_keeps_apart_from_plain_ones(tmp_path: Path) -> None:
     teacher, _ = one_take(tmp_path, (1, 5, 10), (1, 20, 30))
     teacher.ask("mirror", set="kitchen", example="take-0001/e0")
-    with pytest.raises(Refusal, match=r"because e0 is mirrored .* and e1 is not"):
+    with pytest.raises(Refusal, match="segment e0 is mirrored .* and segment e1 is not"):
         teacher.ask("trim", set="kitchen", example="take-0001/e0", start_ns=stamp_of(5), end_ns=stamp_of(20))
 
 

@@ -143,10 +143,14 @@ def test_a_model_that_keeps_nothing_is_refused() -> None:
     [
         pytest.param(lambda kept: {n: a for n, a in kept.items() if n != "kept_background"}, "damaged", id="missing"),
         pytest.param(
-            lambda kept: kept | {"kept_labels": np.char.add(kept["kept_labels"], "x")}, "another model", id="other"
+            lambda kept: kept | {"kept_labels": np.char.add(kept["kept_labels"], "x")},
+            "does not fit the model",
+            id="other",
         ),
         pytest.param(
-            lambda kept: kept | {"kept_pooled_directions": kept["kept_pooled_directions"][1:]}, "another", id="shape"
+            lambda kept: kept | {"kept_pooled_directions": kept["kept_pooled_directions"][1:]},
+            "does not fit",
+            id="shape",
         ),
         pytest.param(
             lambda kept: kept | {"kept_stage_0_samples": kept["kept_stage_0_samples"] + 1000},
@@ -163,7 +167,7 @@ def test_a_model_that_keeps_nothing_is_refused() -> None:
         ),
         pytest.param(
             lambda kept: {n: a for n, a in kept.items() if not n.startswith("kept_window")},
-            "not contain the windows",
+            "not contain the training data of the search",
             id="no windows",
         ),
     ],
@@ -257,7 +261,7 @@ def test_an_update_does_not_lose_the_search_where_nothing_of_it_is_kept() -> Non
 
 def test_nothing_is_added_to_a_model_that_keeps_nothing_of_its_search() -> None:
     updated = updated_without_kept()
-    with pytest.raises(TrainingError, match="not contain the windows.*train the model again"):
+    with pytest.raises(TrainingError, match="not contain the training data of the search.*train the model again"):
         add_to(updated, updated.kept, new_samples(), taught().streams)
 
 

@@ -43,18 +43,22 @@ def test_enough_examples_by_two_people_with_background_need_no_warning(counts: M
             ("anna", "ben"),
             "There are examples of only one action, push: record at least one more action.",
         ),
-        (ENOUGH, ("anna",), "All examples are of anna: record 5 examples of each action by a second person."),
+        (
+            ENOUGH,
+            ("anna",),
+            "All examples show the same person, anna: record 5 examples of each action, performed by a second person.",
+        ),
         (
             ENOUGH,
             ("",),
-            "No example names the person who performs it, so the model cannot learn how people differ: record at least "
-            "two people, each under a name.",
+            "The examples do not name the people who perform them, so the model cannot learn how people differ: "
+            "record at least two people, and give the name of each.",
         ),
         (
             {"push": 2, "lift": 4, "pull": 5, "idle": 5},
             ("anna", "ben"),
-            "Few examples: lift has 4 (1 more needed) and push has 2 (3 more needed). Record at least 5 examples of "
-            "each action.",
+            "Too few examples: lift has 4 (1 more needed) and push has 2 (3 more needed). Record at least 5 examples "
+            "of each action.",
         ),
         (
             {"push": 20, "pull": 6, "lift": 5, "turn": 7, "idle": 5},
@@ -86,12 +90,13 @@ def test_without_background_what_is_none_of_the_actions_is_a_guess() -> None:
         (
             [("push", "push")] * 4 + [("push", "pull")] * 2 + [("pull", "pull")] * 2,
             "The model confuses pull and push: in a test on examples left out of the training, push was taken for "
-            "pull in 2 of 6. Record 5 more examples of each by other people, ",
+            "pull in 2 of 6. Record 5 more examples of each of the two actions, performed by other people, ",
         ),
         (
             [("push", "push")] * 3 + [("push", "pull")] + [("pull", "pull")] * 3 + [("pull", "push")],
             "The model confuses pull and push: in a test on examples left out of the training, pull was taken for "
-            "push in 1 of 4 and push was taken for pull in 1 of 4. Record 5 more examples of each by other people, ",
+            "push in 1 of 4 and push was taken for pull in 1 of 4. Record 5 more examples of each of the two actions, "
+            "performed by other people, ",
         ),
     ],
 )
@@ -100,7 +105,7 @@ def test_two_actions_that_are_mixed_up_are_named_with_what_to_record(
 ) -> None:
     (warning,) = advised(examples(ENOUGH), held_out)
     assert warning.startswith(said)
-    assert warning.endswith("or perform the two actions more differently.")
+    assert warning.endswith("or make the two actions more different.")
 
 
 @pytest.mark.parametrize(

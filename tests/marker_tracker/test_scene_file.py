@@ -41,8 +41,10 @@ def test_a_placement_turns_about_x_then_y_then_z(tmp_path) -> None:
 
 GOOD = "family: 4X4_50\nsize_m: 0.08\nobjects:\n  1: {name: cup}\n"
 BAD = {
-    "objects:\n  1: {name: cup, size_m: 0.1}\n": "line 2: objects.1: `family` is missing: set it in this entry",
-    "family: 4X4_50\nobjects:\n  1: {name: cup}\n": "line 3: objects.1: `size_m` is missing: set it in this entry",
+    "objects:\n  1: {name: cup, size_m: 0.1}\n": "line 2: objects.1: `family` is missing: add `family` to this entry",
+    "family: 4X4_50\nobjects:\n  1: {name: cup}\n": (
+        "line 3: objects.1: `size_m` is missing: add `size_m` to this entry"
+    ),
     "family: 9X9\nsize_m: 0.1\nobjects:\n  1: {name: cup}\n": "line 1: family: '9X9' is not a marker dictionary: use",
     "family: 4X4_50\nsize_m: -1\nobjects:\n  1: {name: cup}\n": "line 2: size_m: Input should be greater than 0",
     GOOD + "  2: {nmae: box}\n": "line 5: objects.2.nmae: there is no such field: remove it or correct its spelling",
@@ -52,8 +54,9 @@ BAD = {
     GOOD + "  2: box\n": "line 5: objects.2: has to have fields, such as {name: cup}",
     "family: 4X4_50\nobjects: [cup]\n": "line 2: objects: has to map ids to objects",
     GOOD + "  2: {name: box, markers: [{id: 2, object_from_marker: {translation_m: [0, 0, 35]}}]}\n": "equal to 5",
-    GOOD
-    + "  2: {name: box, markers: [{id: 1}]}\n": "object 1 has marker 1 of the family DICT_4X4_50 already: give object",
+    GOOD + "  2: {name: box, markers: [{id: 1}]}\n": (
+        "marker 1 of the family DICT_4X4_50 already belongs to object 1: give object"
+    ),
     GOOD
     + "  60: {name: box}\n": "line 5: objects.60: the dictionary DICT_4X4_50 has no marker 60: use ids from 0 to 49",
     GOOD + "  2: {name: box, family: 4X4_100}\n": "DICT_4X4_100 and DICT_4X4_50 contain the same markers: use",

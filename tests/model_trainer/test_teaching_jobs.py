@@ -83,7 +83,7 @@ def test_a_set_is_trained_put_into_use_and_undone(teacher: Teacher, finish: Fini
     third = classifier.poll(Counters())
     assert third is not None and third.id == first.id
     assert not teacher.tick().can_undo
-    with pytest.raises(Refusal, match="no previous model to return to"):
+    with pytest.raises(Refusal, match="there is no model to return to"):
         teacher.ask("undo")
 
 
@@ -138,7 +138,7 @@ def test_a_set_of_one_person_is_tested_by_examples(teacher: Teacher, finish: Fin
     result = finish()["result"]
     assert (result["by"], result["n"], result["accuracy"]) == ("examples", 10, 1.0)
     assert any(
-        "All examples are of anna: record 5 examples of each action by a second person." in it
+        "All examples show the same person, anna: record 5 examples of each action, performed by a second person." in it
         for it in result["advice"]
     )
 
@@ -185,7 +185,7 @@ def test_one_job_runs_at_a_time_and_tells_how_far_it_is(teacher: Teacher) -> Non
     teacher.jobs[-1].news = Progressing("training the maps", 0.25)
     state = teacher.tick(4).job
     assert state is not None and (state.stage, state.done, state.state) == ("training the maps", 0.25, "running")
-    with pytest.raises(Refusal, match=rf"a training is already running \({begun['id']}\)"):
+    with pytest.raises(Refusal, match=rf"the job {begun['id']} \(a training\) is still running"):
         teacher.ask("evaluate", set="kitchen")
     assert teacher.ask("cancel", job=begun["id"])["state"] == "cancelled"
     assert teacher.jobs[-1].ended

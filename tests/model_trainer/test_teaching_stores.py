@@ -370,7 +370,7 @@ def test_too_many_uploads_are_refused(teacher: Teacher, monkeypatch: pytest.Monk
     monkeypatch.setattr(upload_store, "MOST_FILES", 3)
     for number in range(3):
         send(teacher, f"clip{number}")
-    with pytest.raises(Refusal, match="import some files first, or restart"):
+    with pytest.raises(Refusal, match="Import some of the waiting files first, or restart"):
         send(teacher, "clip3")
     send(teacher, "clip0", b"anew")
 

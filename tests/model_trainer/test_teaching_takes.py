@@ -186,7 +186,7 @@ def test_what_is_recorded_needs_a_name_and_a_set(teacher: Teacher) -> None:
         teacher.ask("record", set="kitchen")
     with pytest.raises(Refusal, match=r"no set 'garden': use an existing set \(kitchen\)"):
         teacher.ask("record", set="garden", label="wave")
-    with pytest.raises(Refusal, match="contains no recorded action to repeat yet"):
+    with pytest.raises(Refusal, match="contains no recording of an action yet"):
         teacher.ask("redo_last", set="kitchen")
 
 

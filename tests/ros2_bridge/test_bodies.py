@@ -459,5 +459,7 @@ def test_bodies_are_subscribed_to_only_if_they_are_wanted() -> None:
 
 
 def test_bodies_need_the_name_of_the_cameras_frame() -> None:
-    with pytest.raises(ValidationError, match="--ros-bodies needs --ros-frame-id: give the name of the optical frame"):
+    with pytest.raises(
+        ValidationError, match="--ros-bodies needs --ros-frame-id: set --ros-frame-id to the optical frame"
+    ):
         Settings(ros_bodies=True)

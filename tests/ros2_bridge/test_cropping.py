@@ -10,7 +10,7 @@ from conftest import NEEDS_ROS2_EXTRA
 
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
-from actum.installing import adding
+from actum.installing import install_command
 from actum.messages import Image
 from actum.settings import SettingsError
 from humans import Room, image
@@ -84,5 +84,5 @@ def test_without_opencv_it_is_refused_with_what_to_install(monkeypatch: pytest.M
         monkeypatch.delitem(sys.modules, module, raising=False)
     with pytest.raises(SettingsError) as refused:
         Ros2Bridge(Settings(ros_topics=WORDS))
-    assert str(refused.value).startswith("ros_topics: the topic cropped needs cv2, which is not installed: ")
-    assert adding("marker-tracker") in str(refused.value)
+    assert str(refused.value).startswith("ros_topics: the topic 'cropped' needs cv2, which is not installed: run ")
+    assert install_command("marker-tracker") in str(refused.value)

@@ -59,7 +59,7 @@ def test_a_mark_may_say_when_who_with_which_hand_and_what() -> None:
         (text("[]"), "a JSON list: send a JSON object with some of the fields kind, segment_id, stamp_ns"),
         (
             text('{"kind": "start", "segment": "a"}'),
-            "'segment' is not a field of a message that marks an action: use kind, segment_id",
+            "'segment' is not a field of a message that marks an action: use one or more of kind, segment_id",
         ),
         (text('{"kind": "start", "segment_id": "a", "origin": "auto"}'), "'origin' is not a field"),
         (text('{"kind": "stop", "segment_id": "a"}'), "kind: "),

@@ -54,7 +54,7 @@ def test_a_mark_without_a_classifier_ends_with_code_1_and_says_why(running: Syst
     with running.client():
         marking = running.actum("segment", "start", "a")
     assert marking.returncode == 1
-    assert "no service received the start mark on actum/kinect0/segment" in marking.stderr
+    assert "no service receives marks on actum/kinect0/segment, so the start mark was not sent" in marking.stderr
 
 
 def test_without_a_router_a_command_says_what_to_do(running: System) -> None:
@@ -94,7 +94,7 @@ def test_up_runs_everything_that_watch_shows_restarts_what_dies_and_leaves_nothi
             return examined.returncode == 0 and "all services are there" in examined.stdout
 
         wait_until(all_is_well, "doctor finds nothing, once a busy machine keeps up with the sensor")
-        assert "waiting for one" not in up.said(), "the router is there first"
+        assert "waiting for a router" not in up.said(), "the router is there first"
         wait_until(lambda: re.search(r"the page: http://127.0.0.1:\d+/", up.said()) is not None, "it names the page")
         subprocess.run(["pkill", "-KILL", "-P", str(up.process.pid), "-f", "action_fusion"], check=True)
         wait_until(lambda: "action_fusion ended with code -9 and restarts" in up.said(), "the supervisor notices")

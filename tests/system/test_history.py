@@ -42,7 +42,7 @@ def put(client: Client, *names: str) -> None:
 def test_what_happened_is_kept_and_read_like_what_happens(running: System, tmp_path: Path) -> None:
     folder = tmp_path / "history"
     recorder = started(running, folder)
-    wait_until(lambda: "waiting for one" in recorder.said(), "it waits for the router")
+    wait_until(lambda: "waiting for a router" in recorder.said(), "it waits for the router")
     running.start_router()
     with running.client() as client:
         running.wait_for_services(client, "event_recorder")

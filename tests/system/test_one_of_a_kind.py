@@ -93,7 +93,7 @@ def survivor(services: Sequence[Running]) -> Running:
 
 def test_of_some_that_wait_for_the_same_router_one_stays(running: System) -> None:
     services = [start(running, name) for name in ("one", "two", "three")]
-    wait_until(lambda: all("waiting for one" in it.said() for it in services), "each says that it waits")
+    wait_until(lambda: all("waiting for a router" in it.said() for it in services), "each says that it waits")
     running.start_router()
     survivor(services)
     with running.client() as client:
@@ -151,7 +151,7 @@ def test_one_that_no_longer_answers_is_waited_for_and_ends_when_it_comes_back(ru
         first.process.send_signal(signal.SIGSTOP)
         second = start(running, "one")
         wait_for_tokens(client, "pose_preprocessor/one")
-        assert "two, is registered but does not answer: waiting" in second.said()
+        assert "two, is registered but does not answer: this instance waits" in second.said()
         first.process.send_signal(signal.SIGCONT)
         assert code_of(first) == 0
         assert "one replaces this instance" in first.said()

@@ -31,7 +31,7 @@ pytestmark = pytest.mark.system
 def waiting(running: System) -> dict[str, Running]:
     """Every service, started without a router, each with a sensor of its own."""
     services = {name: running.start(program, "--sensor", name) for name, program in PROGRAMS.items()}
-    wait_until(lambda: all("waiting for one" in it.said() for it in services.values()), "each says that it waits")
+    wait_until(lambda: all("waiting for a router" in it.said() for it in services.values()), "each says that it waits")
     return services
 
 
@@ -54,7 +54,7 @@ def test_services_started_before_the_router_wait_for_it_serve_and_leave(
             assert "actum.skeleton/1" in info.schemas
             assert info.joint_names[0] == "head"
     assert_leave_cleanly(waiting)
-    assert {name: it.said().count("waiting for one") for name, it in waiting.items()} == dict.fromkeys(PROGRAMS, 1)
+    assert {name: it.said().count("waiting for a router") for name, it in waiting.items()} == dict.fromkeys(PROGRAMS, 1)
 
 
 def test_services_that_never_found_their_router_leave_cleanly_too(waiting: dict[str, Running]) -> None:

@@ -51,7 +51,7 @@ def test_a_host_that_does_not_answer(running: System) -> None:
         with full(silent.getsockname()):
             port = silent.getsockname()[1]
             assert said(running, f"tcp/127.0.0.1:{port}").startswith(
-                "127.0.0.1 does not answer: check that it is switched on and connected"
+                "127.0.0.1 does not answer: check that this host is switched on and connected"
             )
 
 
@@ -85,7 +85,7 @@ def test_a_router_that_is_frozen(running: System) -> None:
         pass
     router.process.send_signal(signal.SIGSTOP)
     try:
-        assert "does not answer as a router: another program" in said(running, running.settings.connect)
+        assert "accepts connections, but no router answers there" in said(running, running.settings.connect)
     finally:
         router.process.send_signal(signal.SIGCONT)
 
@@ -167,7 +167,7 @@ def test_a_wrong_password(running: System, authority: Authority) -> None:
     login = {"user": "viewer", "password": "wrong"}
     (viewer / "user.json5").write_text(json.dumps({"transport": {"auth": {"usrpwd": login}}}))
     refused = said(running, started(running, router), viewer)
-    assert "If the router rejects the login of user viewer, copy" in refused
+    assert "Either the router rejects the login of user viewer: copy" in refused
     assert "wrong" not in refused
 
 

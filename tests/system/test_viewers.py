@@ -20,7 +20,7 @@ from urllib.request import Request, urlopen
 import psutil
 import pytest
 
-from actum.installing import adding
+from actum.installing import install_command
 from actum.messages import Truth
 from actum.recorder import Recorder
 from actum_command.scene_marks import mark_of
@@ -260,4 +260,4 @@ def test_without_its_extra_a_viewer_says_which_it_needs(running: System, scene: 
             env=running.environment, capture_output=True, text=True, check=False,
         )  # fmt: skip
         assert asked.returncode == 1
-        assert adding(extra) in asked.stderr
+        assert install_command(extra) in asked.stderr

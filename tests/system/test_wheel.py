@@ -112,7 +112,9 @@ def test_a_stranger_installs_it_learns_and_recognises(programs: Path, wheel: Pat
     assert Path(place).is_relative_to(programs.parent), place
     assert set(run(tmp_path, python, "-c", IMPORT_EVERYTHING).split()) <= NOT_IN_ALL
 
-    assert str(wheel) in run(tmp_path, python, "-c", "from actum.installing import adding; print(adding('view'))")
+    assert str(wheel) in run(
+        tmp_path, python, "-c", "from actum.installing import install_command; print(install_command('view'))"
+    )
 
     run(tmp_path, actum, "simulate", "examples.mcap", "--repetitions", "2")
     run(tmp_path, actum, "train", "examples.mcap", "-o", "model.npz")

@@ -93,11 +93,11 @@ def test_a_command_is_answered_by_its_service(page: Served) -> None:
         ({"service": "som_classifier", "command": "**"}, "ask.command"),
         (
             {"service": "som_classifier", "command": "maps", "fields": {"timeout_s": 1e9}},
-            "a command cannot have fields with the reserved names timeout_s",
+            "a command cannot have the fields timeout_s, because",
         ),
         (
             {"service": "som_classifier", "command": "maps", "fields": {"self": 1}},
-            "a command cannot have fields with the reserved names self",
+            "a command cannot have the fields self, because",
         ),
         ({"service": "som_classifier"}, "ask.command is missing"),
     ],

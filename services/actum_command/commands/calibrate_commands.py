@@ -81,7 +81,7 @@ def intrinsics(
     file, the command writes a picture that shows in which parts of the image the board was seen.
     """
     if live == bool(images):
-        fail("give either pictures of the board, or --live to take the pictures now")
+        fail("give either pictures of the board or --live, not both; --live takes the pictures now")
     files = [file for path in images or [] for file in (pictures_in(path) if path.is_dir() else [path])]
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
@@ -134,7 +134,10 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
     file for the camera that sees the markers.
     """
     if (live is not None) == bool(pairs):
-        fail("give either pairs of pictures, or --live with the two sensors, such as --live kinect1,kinect0")
+        fail(
+            "give either pairs of pictures or --live, not both; --live needs the names of the two sensors, such as "
+            "--live kinect1,kinect0"
+        )
     refuse_ending(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     with failing_on(CalibrationError, PairingError, OSError):

@@ -47,7 +47,10 @@ def up(
             instruction, instructed_ns = estimator.instruction, frame.stamp_ns
             say(f"  {instruction}")
     if (tilt := estimator.up) is None:
-        fail(f"nobody stood upright and still for two seconds. The last instruction was: {estimator.instruction}")
+        fail(
+            "nobody stood upright and still for two seconds: try again, and follow the instructions. The last "
+            f"instruction was: {estimator.instruction}"
+        )
     say(
         f"the camera looks {_signed(tilt.pitch_deg, 'up', 'down')} and is turned "
         f"{_signed(tilt.roll_deg, 'clockwise', 'counterclockwise')} (the body swayed by {tilt.sway_deg:.1f} degrees)"

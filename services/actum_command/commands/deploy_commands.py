@@ -125,16 +125,22 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
     run the command again with other options.
     """
     if not_secured and passwords:
-        fail("--open and --passwords exclude each other: leave out one of them")
+        fail(
+            "--open and --passwords cannot be used together, because --open turns off passwords: leave out one of the "
+            "two"
+        )
     with failing_on(SettingsError, InvalidKeyError):
         placed = hosts_of(hosts, sensors)
     cameras = [host for host in placed if host.kind == "camera"]
     if ros_bodies is not None and (ros2 is None or simulate or len(cameras) > 1):
-        fail("--ros-bodies needs --ros2 and a single camera host, and excludes --simulate")
+        fail(
+            "--ros-bodies works only with --ros2, with exactly one camera host and without --simulate: add --ros2, "
+            "name only one camera host in --hosts, and leave out --simulate"
+        )
     if ros_bodies is not None and not FRAME.fullmatch(ros_bodies):
         fail(
-            f"--ros-bodies {ros_bodies!r} is not the name of a frame: use letters, digits, '_', '.', '/' and '-', at "
-            "most 200, such as camera_color_optical_frame"
+            f"--ros-bodies {ros_bodies!r} is not the name of a frame: use at most 200 letters, digits, '_', '.', '/' "
+            "and '-', such as camera_color_optical_frame"
         )
     with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, revoked_before, write_deployment

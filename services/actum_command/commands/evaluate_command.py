@@ -123,8 +123,8 @@ def evaluate_command(  # noqa: PLR0913, PLR0917 - one parameter is one option
         return
     if not by_person and len(files) == 1:
         fail(
-            f"a model and at least one recording are needed, but only {files[0]} was given: give both, or use "
-            "--leave-one-person-out with recordings alone"
+            f"a model and at least one recording are needed, but only {files[0]} was given: give both, or give only "
+            "recordings and add --leave-one-person-out"
         )
     with failing_on(ModelError):
         model = None if by_person else load_model(files[0])
@@ -192,7 +192,7 @@ def _evaluate_continuously(
 def _refuse_with_intent(context: typer.Context, given: Given) -> None:
     """Fail where an option is given that has to do with models of actions, of which intents need none."""
     if flags := [*flags_given(context, OF_MODELS), *map(flag_of, given)]:
-        fail(f"--intent tests recordings without a model of actions: leave out {' and '.join(flags)}")
+        fail(f"--intent uses no model of actions: leave out {' and '.join(flags)}")
 
 
 def _evaluate_intents(recordings: Sequence[Recording], json_file: Path | None) -> None:

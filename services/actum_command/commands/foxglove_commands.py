@@ -130,5 +130,5 @@ def export(
             showing = Showing(stream.show)
             streams.give(showing, stop_on_signals())
     except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror or error})")
+        fail(f"{output} cannot be written ({error.strerror or error}): give another file")
     tell_shown(showing, f"written to {output}")

@@ -77,7 +77,7 @@ def msrc12(
     The data set gives one point in time per gesture. Each segment extends up to 1.5 s before and after this point.
     """
     if trimmed and composed:
-        fail("--composed and --trimmed exclude each other, because --composed trims by itself: leave out --trimmed")
+        fail("--composed and --trimmed cannot be used together, because --composed already trims: leave out --trimmed")
     importer = import_msrc12_composed if composed else import_msrc12_trimmed if trimmed else import_msrc12
     _run(importer, source, out)
 

@@ -77,7 +77,10 @@ def inspect(
         with bars() as progress:
             count = _write_inspection(model, recordings, output, picture_format, progress)
     except NoMapsError as error:
-        fail(f"{error}: also give recordings, so that the command can draw how the model recognises actions in them")
+        fail(
+            f"{error}: give recordings, too. The command then draws how the model recognises the actions in these "
+            "recordings"
+        )
     except (ModelError, RecordingError, OSError) as error:
         fail(str(error))
     tell_unread(recordings)

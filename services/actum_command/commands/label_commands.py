@@ -230,7 +230,10 @@ def _found(file: Path, name: str) -> tuple[Take, MarkedSegment]:
         hint = f"did you mean {near[0]}?" if near else all_there
         fail(f"there is no segment {name!r} in {file}: {hint}")
     if name not in named and len(named) > 1:
-        fail(f"{len(named)} segments have the id {name!r}: give the number of one of them, {' or '.join(named)}")
+        fail(
+            f"{len(named)} segments have the id {name!r}: give the number of one of these segments instead, "
+            f"{' or '.join(named)}"
+        )
     return take, chosen_one
 
 

@@ -113,7 +113,7 @@ def fetch(published: Published, path: Path, progress: Callable[[int], None]) -> 
                 break
             progress(size)
         if size < published.size:
-            raise FetchError(f"{published.url}: the download stopped after {size} of {published.size} bytes; try again")
+            raise FetchError(f"{published.url}: the download stopped after {size} of {published.size} bytes: try again")
         if size > published.size or digest.hexdigest() != published.sha256:
             raise FetchError(
                 f"the file downloaded from {published.url} is not the published one (SHA-256 {digest.hexdigest()}, "

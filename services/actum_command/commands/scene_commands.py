@@ -41,7 +41,7 @@ def simulate(
     try:
         write_examples(output, repetitions, actor, seed, everyday, minutes, pauses)
     except OSError as error:
-        fail(f"{output} cannot be written ({error.strerror})")
+        fail(f"{output} cannot be written ({error.strerror}): give another file")
     actions = "no actions" if everyday == "only" else f"{repetitions} x 5 actions"
     say(f"{actions} of simulated actor {actor}, written to {output}")
 

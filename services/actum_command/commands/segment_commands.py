@@ -117,8 +117,8 @@ def _mark(kind: Literal["start", "end"], segment_id: str, **fields: object) -> S
 def _put(client: Client, mark: Segment) -> None:
     if not client.wait_for_subscriber(keys.SEGMENT, WAIT_S):
         fail(
-            f"no service received the {mark.kind} mark on {keys.key_of(mark)} within {WAIT_S:g} s: check with 'actum "
-            "doctor' that som_classifier runs"
+            f"no service receives marks on {keys.key_of(mark)}, so the {mark.kind} mark was not sent: check with "
+            "'actum doctor' that som_classifier runs"
         )
     client.put(mark)
     say(f"{mark.kind} {mark.segment_id}")

@@ -9,7 +9,7 @@ from typing import Annotated, get_args
 import typer
 from pydantic import ValidationError
 
-from actum.installing import adding
+from actum.installing import install_command
 from actum.runtime import needs_extra, run_bridge, serve_router, stop_on_signals
 from actum.settings import DEFAULT_ENDPOINT, NodeSettings, ServiceSettings, SettingsError, complaint, host_and_port
 from actum_command import processes
@@ -155,7 +155,7 @@ def up(
             if page:
                 programs = processes.with_page(here, programs, with_page_ports(given, here))
                 if programs[-1].module != processes.PAGE:
-                    say(f"no web page: {adding('web-dashboard')}", style="yellow")
+                    say(f"no web page: run {install_command('web-dashboard')}", style="yellow")
             run(here, programs, chosen)
     except (SettingsError, ValidationError) as error:
         fail(complaint(error))

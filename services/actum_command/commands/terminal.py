@@ -14,7 +14,7 @@ from rich.markup import escape
 from rich.segment import Segment
 
 from actum.atomic_file import write_whole
-from actum.installing import adding
+from actum.installing import install_command
 from actum.runtime import Client, RouterUnreachableError, obstacle
 from actum.settings import ServiceSettings, SettingsError, complaint
 
@@ -85,7 +85,7 @@ def connect_whenever() -> Client:
     try:
         return Client(here, wait_s=0)
     except RouterUnreachableError:
-        say(f"there is no router at {here.connect} yet: waiting for one")
+        say(f"there is no router at {here.connect} yet: waiting for a router")
     except SettingsError as error:
         fail(str(error))
     return connect(wait_s=float("inf"))
@@ -94,7 +94,7 @@ def connect_whenever() -> Client:
 def refuse_without(module: str, what: str, extra: str) -> None:
     """Fail where a library is not installed; `what` begins the sentence and names the library."""
     if find_spec(module) is None:
-        fail(f"{what} is not installed: {adding(extra)}")
+        fail(f"{what} is not installed: run {install_command(extra)}")
 
 
 def refuse_ending(file: Path, *endings: str) -> None:
@@ -111,7 +111,7 @@ def write_text(file: Path, text: str) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
         write_whole(file.resolve(), text.encode())
     except OSError as error:
-        fail(f"{file} cannot be written ({error.strerror})")
+        fail(f"{file} cannot be written ({error.strerror}): give another file")
 
 
 def refuse_unwritable(file: Path, *endings: str) -> None:

@@ -108,8 +108,10 @@ def _known(path: Path, context: typer.Context) -> tuple[Model, Arrays]:
     flags = {"preset": "--preset", "settings": "--set", "background": "--background", "continued": "--continue"}
     given = flags_given(context, flags)
     if given:
-        kept = "preset, settings, background and continuation"
-        fail(f"with --add-to, the model keeps its {kept}: leave out {' and '.join(given)}")
+        fail(
+            "with --add-to, the model keeps its preset, settings, background and continuation: leave out "
+            f"{' and '.join(given)}"
+        )
     with failing_on(ModelError):
         return load_model(path), kept_in(path)
 
@@ -167,5 +169,8 @@ def preset_named(name: str, settings: Sequence[str]) -> Preset:
 def refuse_place(file: Path, ending: str) -> None:
     """Fail before long work where its result could not be written."""
     if not file.parent.is_dir():
-        fail(f"{file} cannot be written: the folder {file.parent} does not exist")
+        fail(
+            f"{file} cannot be written: the folder {file.parent} does not exist. Create this folder, or give another "
+            "file"
+        )
     refuse_unwritable(file, ending)

@@ -71,7 +71,7 @@ def tune(
     """
     began_s = time.monotonic()
     if false_alarms_per_min is not None and not 0 < false_alarms_per_min < float("inf"):
-        fail(f"--false-alarms-per-min is {false_alarms_per_min:g}; it has to be a number above 0")
+        fail(f"--false-alarms-per-min is {false_alarms_per_min:g}: give a number above 0")
     if output is not None:
         refuse_unwritable(output, ".toml")
         refuse_other_settings(output)

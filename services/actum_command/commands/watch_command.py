@@ -113,7 +113,10 @@ def _show_recorded(named: list[Path], wanted: list[keys.Topic], printed: Printed
     for remark in found.remarks:
         _remark(remark)
     if not found.paths:
-        fail(f"there are no recordings in {', '.join(map(str, named))}: give *.mcap files, or their folders")
+        fail(
+            f"there are no recordings in {', '.join(map(str, named))}: give *.mcap files, or folders that contain "
+            "such files"
+        )
     with failing_on(RecordingError):
         for recording in map(Recording, found.paths):
             for message in recording.messages(wanted):

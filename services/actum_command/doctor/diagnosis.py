@@ -53,8 +53,8 @@ def examine(client: Client) -> Examination:
 def two_sources() -> Iterator[str]:
     """Yield the problem of a sensor whose skeletons two programs publish."""
     yield (
-        f"both {GATEWAY} and {BRIDGE} publish this sensor's skeletons, so people are mixed up: start {BRIDGE} without "
-        f"--ros-bodies, or with a --sensor of its own, or stop {GATEWAY}"
+        f"both {GATEWAY} and {BRIDGE} publish this sensor's skeletons, so people are mixed up: stop {GATEWAY}, or "
+        f"start {BRIDGE} without --ros-bodies or with another --sensor"
     )
 
 
@@ -64,7 +64,7 @@ def who_serves(heard: Heard) -> Iterator[str]:
         serving = heard.tokens.get(service, [])
         others = sorted(set(members) - set(serving))
         standing_by = f"; standing by: {', '.join(others)}" if others else ""
-        yield f"{service} is shared; it is run for this sensor by: {', '.join(serving) or 'nobody yet'}{standing_by}"
+        yield f"several processes share {service}; serving this sensor: {', '.join(serving) or 'none yet'}{standing_by}"
 
 
 def everything_denied(heard: Heard, client: Client) -> str | None:

@@ -94,10 +94,10 @@ def _problems(name: str, instances: list[str], infos: list[Info], status: Status
         yield f"{name} is not running: start it with {program}, or start all services with 'actum up'"
         return
     if len(instances) > 1 or len(infos) > 1:
-        who = _who(infos, instances)
+        running = _who(infos, instances)
         yield (
-            f"more than one instance of {name} runs, so every action is answered more than once: stop all but one of "
-            f"these instances: {who}"
+            f"more than one instance of {name} runs ({running}), so every action is answered more than once: stop all "
+            "instances but one"
         )
     if status is None:
         yield f"{name} runs but published no status message for {STATUS_S:g} s: if this persists, restart {name}"

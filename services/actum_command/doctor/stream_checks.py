@@ -44,7 +44,10 @@ def hops(heard: Heard) -> Iterator[str]:
     reported = [status.hops for statuses in heard.statuses.values() for status in statuses[-1:] if status.hops]
     where = "in the last minute, measured by web_dashboard" if reported else "measured where doctor runs"
     for hop in reported[0] if reported else heard.hops:
-        yield f"{hop.cause} → {hop.effect}: p50 {hop.p50_ms:.1f} ms, p99 {hop.p99_ms:.1f} ms ({hop.count} {where})"
+        yield (
+            f"{hop.cause} → {hop.effect}: p50 {hop.p50_ms:.1f} ms, p99 {hop.p99_ms:.1f} ms ({hop.count} messages "
+            f"{where})"
+        )
 
 
 def handled_hz(statuses: Sequence[Status], topic: Topic) -> float | None:
@@ -94,14 +97,14 @@ def _stopped(statuses: Statuses) -> Iterator[str]:
 
 
 def _frozen(streams: Mapping[Topic, Watched]) -> Iterator[str]:
-    for topic, words in ((keys.SKELETON, "skeletons"), (keys.COLOR, "images")):
+    for topic, samples in ((keys.SKELETON, "skeletons"), (keys.COLOR, "images")):
         if streams[topic].stands_still:
             yield (
-                f"the time stamps of the {words} do not increase, so services refuse all {words} but the first: "
+                f"the time stamps of the {samples} do not increase, so services refuse all {samples} but the first: "
                 "restart the sensor service"
             )
         elif streams[topic].repeats:
-            yield f"all {words} are identical, so the camera is frozen: unplug the camera and plug it in again"
+            yield f"all {samples} are identical, so the camera is frozen: unplug the camera and plug it in again"
 
 
 def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]:

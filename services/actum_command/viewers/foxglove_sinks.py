@@ -107,7 +107,11 @@ def served(
     with serving.serving():
         yield stream, serving.address.replace("http://", "ws://").rstrip("/")
     if server.left_out:
-        log.warning("%d messages were dropped, because Foxglove clients were too slow to receive them", server.left_out)
+        log.warning(
+            "%d messages were dropped, because Foxglove clients were too slow to receive them: close some of their "
+            "panels, or use a faster network",
+            server.left_out,
+        )
 
 
 @contextmanager

@@ -94,11 +94,11 @@ def _running(address: str, port: int, web_port: int | None) -> Iterator["subproc
     own_page = ["--cors-allow-origin", f"http://{address}:{web_port}"]
     page_options = [] if web_port is None else ["--serve-web", "--web-viewer-port", str(web_port), *own_page]
     ports = [port] if web_port is None else [port, web_port]
-    for needed in ports:
-        if _is_listened_on(address, needed):
+    for number in ports:
+        if _is_listened_on(address, number):
             raise ViewerError(
-                f"port {needed} is already in use: stop the program that listens on this port, or choose another "
-                "--port or --web-port"
+                f"port {number} is already in use: stop the program that listens on this port, or choose another port "
+                "with --port or --web-port"
             )
     process = subprocess.Popen(
         [_program(), "--bind", address, "--port", str(port), "--expect-data-soon", *page_options],
@@ -154,7 +154,8 @@ def _wait_until_listening(process: "subprocess.Popen[bytes]", address: str, port
             )
         if time.monotonic() > deadline_s:
             raise ViewerError(
-                f"the Rerun viewer did not listen on {', '.join(map(str, ports))} within {START_S:g} s: try again"
+                f"the Rerun viewer did not listen on port {' and '.join(map(str, ports))} within {START_S:g} s: try "
+                "again"
             )
         time.sleep(POLL_S)
 

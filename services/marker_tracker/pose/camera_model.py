@@ -64,8 +64,8 @@ def _checked(
     if not all(0 < f < LARGEST_FOCAL_PX for f in focal) or np.abs(matrix).max() > LARGEST_FOCAL_PX:
         raise UnusableImageError(
             "bad_calibration",
-            f"the camera matrix K has the focal lengths {focal[0]:g} and {focal[1]:g} px, and its largest entry is "
-            f"{np.abs(matrix).max():g}; focal lengths must be above 0, and no entry above {LARGEST_FOCAL_PX:g}: "
+            f"the camera matrix K has the focal lengths {focal[0]:g} and {focal[1]:g} px and the largest entry "
+            f"{np.abs(matrix).max():g}. The focal lengths must be above 0, and no entry above {LARGEST_FOCAL_PX:g}: "
             "calibrate the camera again",
         )
     if not np.array_equal(matrix[2], (0, 0, 1)):
@@ -104,7 +104,8 @@ def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tup
         raise UnusableImageError(
             "calibration_size_mismatch",
             f"the image is {width}x{height}, but the camera was calibrated at {calibrated_px[0]}x{calibrated_px[1]}, "
-            "which has another aspect ratio: calibrate the camera again, or send images with that aspect ratio",
+            "which has another aspect ratio: calibrate the camera again, or send images with the aspect ratio of the "
+            "calibration",
         )
     half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
     scaled: Array = np.linalg.inv(half) @ np.diag([across, down, 1.0]) @ half @ matrix
@@ -113,10 +114,10 @@ def _matrix_for_size(matrix: Array, size_px: tuple[int, int], calibrated_px: tup
 
 def _distortion(coefficients: tuple[float, ...]) -> Array:
     if len(coefficients) not in DISTORTION_LENGTHS:
-        allowed = ", ".join(map(str, DISTORTION_LENGTHS))
+        allowed = " or ".join(map(str, DISTORTION_LENGTHS))
         raise UnusableImageError(
             "bad_calibration",
-            f"distortion has {len(coefficients)} coefficients; allowed numbers of coefficients are {allowed}",
+            f"distortion has {len(coefficients)} coefficients; expected {allowed} coefficients",
         )
     distortion = np.array(coefficients, dtype=np.float64)
     if np.abs(distortion).max(initial=0) > LARGEST_COEFFICIENT:

@@ -67,7 +67,9 @@ class BodyReader:
         topic = self._by_name[foreign.topic]
         try:
             if len(foreign.payload) > MOST_BYTES:
-                raise NotThatTypeError(f"it has {len(foreign.payload)} bytes; at most {MOST_BYTES} are allowed")
+                raise NotThatTypeError(
+                    f"the payload has {len(foreign.payload)} bytes; at most {MOST_BYTES} are allowed"
+                )
             message = from_cdr(foreign.payload, topic.type)
         except NotThatTypeError as error:
             self._counters.reject("bad_body_message", f"a message on {topic.name} is not a valid {topic.type}: {error}")

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 from actum.arrays import Array
 from actum.bridge import ForeignTopic, Output
-from actum.installing import adding
+from actum.installing import install_command
 from actum.messages import Agent, Event, Image, Skeleton
 from actum.node import SECOND_NS, Counters
 from actum.settings import SettingsError
@@ -183,6 +183,7 @@ def _cropper(settings: Settings, counters: Counters) -> "Cropper | None":
         from ros2_bridge.hri_out.cropping import Cropper  # an installation for ROS 2 lacks OpenCV
     except ModuleNotFoundError as error:
         raise SettingsError(
-            f"ros_topics: the topic cropped needs {error.name}, which is not installed: {adding('marker-tracker')}"
+            f"ros_topics: the topic 'cropped' needs {error.name}, which is not installed: run "
+            f"{install_command('marker-tracker')}"
         ) from None
     return Cropper(counters)

@@ -71,7 +71,9 @@ def _role(text: str) -> str:
     try:
         named = [name for _, name, *_ in Formatter().parse(text) if name is not None]
     except ValueError as error:
-        raise ValueError(f"{text!r} cannot be used: {error}; to write a brace as text, double it: {{{{") from None
+        raise ValueError(
+            f"{text!r} cannot be used ({error}): to write a brace as text, double the brace: {{{{"
+        ) from None
     for name in named:
         if name not in PLACEHOLDERS:
             raise ValueError(

@@ -103,8 +103,8 @@ class NiteCapture(OpenNi2Capture):
         except NiteError as error:
             streams.close()
             raise CameraLostError(
-                f"NiTE, which finds people in depth images, cannot use this camera ({error}): unset NITE2_REDIST64 and "
-                "NITE2_REDIST and restart the gateway, which then finds people with the pose model"
+                f"NiTE, which finds people in depth images, cannot use this camera ({error}): unset NITE2_REDIST64 "
+                "and NITE2_REDIST, and restart the gateway. The gateway then finds people with the pose model"
             ) from None
         return streams
 

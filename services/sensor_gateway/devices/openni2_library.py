@@ -3,7 +3,7 @@
 import os
 from typing import Any
 
-from actum.installing import adding
+from actum.installing import install_command
 
 LIBRARIES = "libOpenNI2.so.0", "libOpenNI2.so", "libOpenNI2.dylib", "OpenNI2.dll"
 """File names of the library on Debian, other Linux, macOS and Windows, in the order in which they are tried."""
@@ -15,7 +15,7 @@ class OpenNiError(ValueError):
     """The library is not installed; the message names the remedy and `problem`."""
 
     def __init__(self, problem: str) -> None:
-        remedy = f"run {adding('openni2')}; on Debian also run: apt install libopenni2-0"
+        remedy = f"run {install_command('openni2')}; on Debian also run: apt install libopenni2-0"
         super().__init__(f"the source openni2 needs OpenNI 2 ({problem}): {remedy}")
 
 
@@ -31,7 +31,7 @@ def library() -> Any:
         raise OpenNiError(str(error)) from None
     except TypeError:  # the bindings' enumerations are abstract classes to ctypes since Python 3.13
         raise OpenNiError(
-            "the Python bindings of OpenNI 2 do not work on Python 3.13 or newer; use Python 3.11 or 3.12"
+            "the Python bindings of OpenNI 2 do not work on Python 3.13 or newer: use Python 3.11 or 3.12"
         ) from None
     if not openni2.is_initialized():
         from openni.utils import InitializationError, OpenNIError

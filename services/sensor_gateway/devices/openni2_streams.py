@@ -62,7 +62,7 @@ class Streams:
         self._openni2, self.device = openni2, device
         if not (device.has_sensor(openni2.SENSOR_DEPTH) and device.has_sensor(openni2.SENSOR_COLOR)):
             device.close()
-            raise CameraLostError("the camera lacks colour or depth images: use a camera that has both")
+            raise CameraLostError("the camera does not send both colour and depth images: use a camera that sends both")
         self._depth, self._color = device.create_depth_stream(), device.create_color_stream()
         self.uri: bytes = device.uri
         self._depths: deque[Frame] = deque(maxlen=WAITING)
@@ -90,8 +90,8 @@ class Streams:
             pixels = rows[:, : 3 * frame.width].reshape(frame.height, frame.width, 3)
         else:
             raise CameraLostError(
-                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}; only RGB888 is "
-                "supported"
+                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}; actum reads only "
+                "RGB888: use another driver"
             )
         frames.append((frame.timestamp, (pixels[:, ::-1] if stream in self._mirrored else pixels).copy()))
         frame.close()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from actum import steady_clock
 from actum.arrays import Array
-from actum.installing import adding
+from actum.installing import install_command
 from sensor_gateway.captured_picture import DepthPicture, Picture
 from sensor_gateway.devices.capture import CameraLostError
 from sensor_gateway.devices.device_clock import DeviceClock
@@ -52,8 +52,8 @@ def library() -> Any:
         import pyrealsense2
     except ImportError as error:
         raise RealSenseError(
-            f"the source realsense needs pyrealsense2 ({error}): run {adding('realsense')}; on Debian also run: apt "
-            "install libusb-1.0-0"
+            f"the source realsense needs pyrealsense2 ({error}): run {install_command('realsense')}; on Debian also "
+            "run: apt install libusb-1.0-0"
         ) from None
     return pyrealsense2
 
@@ -238,7 +238,8 @@ def _bgr(color: Any) -> NDArray[np.uint8]:
         return image
     if name not in TO_BGR:
         raise CameraLostError(
-            f"the camera sends colour images in the format {name}; supported: bgr8, {', '.join(TO_BGR)}"
+            f"the camera sends colour images in the format {name}, which actum cannot read: use one of the formats "
+            f"bgr8, {', '.join(TO_BGR)}"
         )
     packed = image.view(np.uint8).reshape(*image.shape[:2], -1)
     return np.asarray(cv2.cvtColor(packed, TO_BGR[name]), dtype=np.uint8)

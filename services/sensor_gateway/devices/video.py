@@ -41,7 +41,9 @@ def pictures_of(path: Path, start_ns: int = 0) -> Generator[Picture, None, None]
             newest_ns = stamp_ns
             yield Picture(grabbed[1].astype(np.uint8, copy=False), stamp_ns)
         if first_ns is None:
-            raise VideoError(f"{path} is not a video that OpenCV can read: convert it, for example to .mp4 with H.264")
+            raise VideoError(
+                f"{path} is not a video that OpenCV can read: convert the video, for example to .mp4 with H.264"
+            )
     finally:
         capture.release()
 

@@ -100,7 +100,9 @@ def flat(landmarks: Landmarks, rays: Array) -> Array:
     joints = landmarks.joints(rays)
     trunk = np.linalg.norm(joints[INDEX["neck"]] - joints[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0))
     if not trunk > 0:
-        raise PlacingError("the trunk has no length in the image, so the person's distance cannot be estimated")
+        raise PlacingError(
+            "the person's trunk has no length in the image, so the person's distance cannot be estimated"
+        )
     sight = np.average(rays, axis=0, weights=np.maximum(landmarks.visibility, LEAST_WEIGHT))
     return np.column_stack([(rays - sight) * TRUNK_M / trunk, np.zeros(len(rays))]) @ rotation_to_ray(sight)
 

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.installing import adding
+from actum.installing import install_command
 from actum.node import SECOND_NS
 from sensor_gateway.people.landmarks import Landmarks, joint_weights
 
@@ -27,8 +27,8 @@ SEARCH_NS = SECOND_NS
 """Interval of searches for further people while there is one: a search costs three times as much as tracking one."""
 TOGETHER_NS = 2 * SECOND_NS
 """Time after several people were detected in which each image is searched for several: one may be hidden briefly."""
-LIBRARIES = "on Debian and Ubuntu run: apt install libegl1 libgles2"
-FETCH = "download one with 'actum models fetch', or name a file in ACTUM_POSE_MODEL"
+INSTALL_LIBRARIES = "install the missing libraries (on Debian and Ubuntu: apt install libegl1 libgles2)"
+FETCH = "download a pose model with 'actum models fetch', or set ACTUM_POSE_MODEL to an existing pose model"
 
 
 LANDMARKS: tuple[str, ...] = (
@@ -187,7 +187,7 @@ class Landmarker:
             first = str(error).partition("\n")[0]
             raise PoseModelError(f"{model_path} is not a pose model ({first}): {FETCH}") from None
         except OSError as error:
-            raise PoseModelError(f"MediaPipe cannot be loaded ({error}): {LIBRARIES}") from None
+            raise PoseModelError(f"MediaPipe cannot be loaded ({error}): {INSTALL_LIBRARIES}") from None
 
 
 @contextmanager
@@ -209,5 +209,7 @@ def _mediapipe() -> Any:
     try:
         import mediapipe
     except ImportError as error:
-        raise PoseModelError(f"finding people in images needs MediaPipe ({error}): run {adding('camera')}") from None
+        raise PoseModelError(
+            f"finding people in images needs MediaPipe ({error}): run {install_command('camera')}"
+        ) from None
     return mediapipe

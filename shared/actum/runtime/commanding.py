@@ -95,5 +95,5 @@ def _packed_reply(reply: dict[str, Any], encoding: str) -> bytes:
     """
     try:
         return packed(reply, encoding)
-    except Refusal as refusal:
-        raise Refusal(f"the command was carried out, but its reply cannot be sent: {refusal}") from None
+    except Refusal as problem:
+        raise Refusal(f"the command was carried out, but its reply cannot be sent: {problem}") from None

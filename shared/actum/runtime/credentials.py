@@ -67,7 +67,7 @@ def login_values(folder: Path) -> dict[str, str]:
         raise SettingsError(_unreadable(file, error)) from None
     except (ValueError, TypeError, KeyError):
         raise SettingsError(
-            f"credentials: {file} does not hold a user and a password: copy the credentials folder again"
+            f"credentials: {file} contains no user name and password: copy the credentials folder to this machine again"
         ) from None
 
 
@@ -88,14 +88,14 @@ def check(folder: Path) -> None:
         problem = error.reason or "no certificate"
         raise SettingsError(
             f"credentials: the certificate and key files in {folder} cannot be used together ({problem}): copy the "
-            "credentials folder again"
+            "credentials folder to this machine again"
         ) from None
 
 
 def _unreadable(file: Path, error: OSError) -> str:
     missing = isinstance(error, FileNotFoundError)
     remedy = (
-        "correct ACTUM_CREDENTIALS, or copy the credentials folder again"
+        "correct ACTUM_CREDENTIALS, or copy the credentials folder to this machine again"
         if missing
         else "give that user read permission"
     )

@@ -91,11 +91,14 @@ def obstacle(settings: ServiceSettings) -> str:
 def _on_the_way(error: OSError, host: str, port: int) -> str:
     """Say what it means that a host cannot be connected to."""
     if isinstance(error, socket.gaierror):
-        unknown = f"this machine cannot resolve the name {host} ({error.strerror})"
-        return f"{unknown}: correct the name, or use the host's IP address"
+        return (
+            f"this machine cannot resolve the name {host} ({error.strerror}): correct the name, or use the host's IP "
+            "address"
+        )
     if isinstance(error, TimeoutError):
         return (
-            f"{host} does not answer: check that it is switched on and connected, and that firewalls allow port {port}"
+            f"{host} does not answer: check that this host is switched on and connected, and that firewalls allow "
+            f"port {port}"
         )
     if isinstance(error, ConnectionRefusedError):
         return (
@@ -121,9 +124,9 @@ def _between_sessions(settings: ServiceSettings, host: str, port: int) -> str:
             "credentials folder"
         )
     return (
-        f"port {port} accepts connections but does not answer as a router: another program may listen there, the "
-        "router may be frozen (restart it), or the router may require a user name and a password (set both in "
-        "the file that ACTUM_ZENOH_CONFIG names)"
+        f"port {port} accepts connections, but no router answers there. Possible causes: another program listens on "
+        "this port; the router is frozen (restart the router); the router requires a user name and a password (set "
+        "both in the file that ACTUM_ZENOH_CONFIG names)"
     )
 
 
@@ -131,10 +134,10 @@ def _with_user(settings: ServiceSettings, user: str | None) -> str:
     """Say why a router whose certificate fits opens no session."""
     login = login_values(settings.credentials) if settings.credentials else {}
     name = login.get(f"{LOGIN}/user", user)
-    who = f"rejects the login of user {name}" if name else "requires a user name and a password"
+    cause = f"rejects the login of user {name}" if name else "requires a user name and a password"
     return (
-        f"TLS works, but no session opens. If the router {who}, copy the credentials folder of this program again. If "
-        "the router is frozen, restart the router"
+        f"TLS works, but the router opens no session. Either the router {cause}: copy this program's credentials "
+        "folder to this machine again. Or the router is frozen: restart the router"
     )
 
 
@@ -160,13 +163,14 @@ def _own_fault(tls: Tls) -> str | None:
     except ssl.SSLError as error:
         problem = getattr(error, "verify_message", None) or error.reason
         return (
-            f"{tls.certificate} is not signed by the authority in {tls.authority} ({problem}): use the files of "
-            "one credentials folder"
+            f"{tls.certificate} is not signed by the authority in {tls.authority} ({problem}): use the certificate "
+            "and the authority of the same credentials folder"
         )
-    if time.time() > ssl.cert_time_to_seconds(own["notAfter"]):
-        return f"{tls.certificate} expired on {own['notAfter']}: renew it with 'actum deploy rotate'"
-    if time.time() < ssl.cert_time_to_seconds(own["notBefore"]):
-        return f"{tls.certificate} is not valid before {own['notBefore']}: check this machine's clock"
+    begin, end = own["notBefore"], own["notAfter"]
+    if time.time() > ssl.cert_time_to_seconds(end):
+        return f"{tls.certificate} expired on {end}: renew this certificate with 'actum deploy rotate'"
+    if time.time() < ssl.cert_time_to_seconds(begin):
+        return f"{tls.certificate} is not valid before {begin}: check this machine's clock"
     return None
 
 
@@ -197,9 +201,13 @@ def _routers_fault(host: str, port: int, tls: Tls) -> str | None:
         _connected(context, host, port).close()
     except ssl.SSLCertVerificationError as error:
         if error.verify_code not in _DISTRUSTED:
-            known = f"the authority in {tls.authority}" if tls.authority else ("an authority that this machine trusts")
-            problem = f"the router's certificate is not signed by {known} ({error.verify_message})"
-            return f"{problem}: use credentials that 'actum deploy' made for this router"
+            authority = (
+                f"the authority in {tls.authority}" if tls.authority else "an authority that this machine trusts"
+            )
+            return (
+                f"the router's certificate is not signed by {authority} ({error.verify_message}): use credentials that "
+                "'actum deploy' made for this router"
+            )
         return _DISTRUSTED[error.verify_code].format(host=host, **_routers_certificate(host, port, tls))
     except ssl.SSLError as error:
         return None if "ALERT" in (error.reason or "") else _NO_TLS.format(port=port, host=host)

@@ -68,7 +68,8 @@ class Alone:
         if now_s - self._unanswered_since_s < LOST_S:
             return False
         log.warning(
-            "cannot check for a second instance of this service: allow liveliness_query in the router's access control"
+            "this service cannot check whether another instance of it already runs: allow liveliness_query in the "
+            "router's access control"
         )
         return True
 
@@ -151,8 +152,8 @@ class Place:
             return False
         if holder.instance not in silent:
             log.warning(
-                "another instance of this service, %s, is registered but does not answer: waiting until the router "
-                "removes this registration",
+                "another instance of this service, %s, is registered but does not answer: this instance waits until "
+                "the router removes the registration",
                 holder.instance,
             )
             silent.add(holder.instance)
@@ -203,13 +204,16 @@ class Place:
     def _refusal(self, holder: keys.Claim) -> str:
         info = self._info_of(holder)
         host = f" on {info.host}" if info and info.host else ""
-        other = f"another {self._service} already runs for sensor {self._settings.sensor}: {holder.instance}{host}"
+        sensor = self._settings.sensor
         if self._settings.take_over:
-            return f"{other}. That instance was asked to stop, but still runs: stop it on its host"
+            return (
+                f"another {self._service} still runs for sensor {sensor}, although it was asked to stop: stop "
+                f"{holder.instance}{host}"
+            )
         return (
-            f"{other}. Two instances would answer everything twice, so this one ({self._settings.instance}) ends. "
-            "Stop the other instance, replace it with --take-over (ACTUM_TAKE_OVER=1), or name another sensor "
-            "with --sensor"
+            f"another {self._service} already runs for sensor {sensor}: {holder.instance}{host}. Two instances would "
+            f"answer everything twice, so this instance ({self._settings.instance}) ends. Stop the other instance, "
+            "replace it with --take-over (ACTUM_TAKE_OVER=1), or name another sensor with --sensor"
         )
 
     def _declare(self, key: str) -> None:

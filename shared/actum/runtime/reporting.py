@@ -166,7 +166,7 @@ class Reporter:
             successor = place.lost_to()
             if successor is not None:
                 log.warning(
-                    "the instance %s replaces this instance for sensor %s: this instance stops",
+                    "the instance %s replaces this instance for sensor %s, so this instance stops",
                     successor,
                     self._settings.sensor,
                 )

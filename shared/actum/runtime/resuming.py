@@ -38,7 +38,7 @@ def check_state_folder(settings: ServiceSettings) -> None:
             folder.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
     except OSError as error:
         raise SettingsError(
-            f"state: the folder {folder} cannot be created ({error.strerror}): name another folder in ACTUM_STATE"
+            f"state: the folder {folder} cannot be created ({error.strerror}): set ACTUM_STATE to another folder"
         ) from None
 
 

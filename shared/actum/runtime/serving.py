@@ -14,7 +14,7 @@ import zenoh
 from pydantic import ValidationError
 
 from actum.command_line import from_command_line
-from actum.installing import adding
+from actum.installing import install_command
 from actum.node import Node, Source
 from actum.runtime.client import Client
 from actum.runtime.outbox import Outbox
@@ -53,7 +53,7 @@ def needs_extra(name: str) -> Iterator[None]:
     except ModuleNotFoundError as error:
         if "." in (error.name or "."):
             raise
-        print(f"{error.name} is not installed: {adding(name)}", file=sys.stderr)
+        print(f"{error.name} is not installed: run {install_command(name)}", file=sys.stderr)
         sys.exit(UNUSABLE)
 
 

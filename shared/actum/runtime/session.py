@@ -128,7 +128,7 @@ def open_session(settings: ServiceSettings, stop: threading.Event) -> zenoh.Sess
             session = zenoh.open(config)
         except zenoh.ZError:
             if not waiting:
-                log.warning("there is no router at %s yet: waiting for one", settings.connect)
+                log.warning("there is no router at %s yet: waiting for a router", settings.connect)
             waiting = True
             stop.wait(RETRY_S)
             continue

@@ -16,7 +16,9 @@ def some_rows(vectors: ArrayLike) -> Array:
     """
     rows = numbers(vectors)
     if not len(rows):
-        raise ValueError("no input vectors are given, so the error of the map cannot be computed: give at least one")
+        raise ValueError(
+            "no input vectors are given, so the error of the map cannot be computed: give at least one vector"
+        )
     return rows
 
 
@@ -75,13 +77,12 @@ def is_complete(vectors: Array) -> bool:
     if np.isfinite(vectors).all():
         return True
     if np.isinf(vectors).any():
+        row = np.flatnonzero(np.isinf(vectors).any(axis=1))[0]
         raise ValueError(
-            f"row {np.flatnonzero(np.isinf(vectors).any(axis=1))[0]} of the vectors contains an infinite value: "
-            "remove the row, or replace the value"
+            f"row {row} of the vectors contains an infinite value: remove this row, or replace the infinite value"
         )
     empty = np.isnan(vectors).all(axis=1)
     if empty.any():
-        raise ValueError(
-            f"row {np.flatnonzero(empty)[0]} of the vectors contains only NaN: remove the row, or fill in a value"
-        )
+        row = np.flatnonzero(empty)[0]
+        raise ValueError(f"row {row} of the vectors contains only NaN: remove this row, or fill in at least one value")
     return False

@@ -51,7 +51,7 @@ class Lookup:
         """
         if x.shape != self._shape:
             raise ValueError(
-                f"the vector has shape {x.shape}; expected ({self.dim},), as the map has {self.dim} components"
+                f"the vector has shape {x.shape}; expected ({self.dim},), because the map has {self.dim} components"
             )
         centred = x - self.centre
         if centred.dtype != self.dtype:

@@ -102,8 +102,8 @@ def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
     indices = np.array(order)
     if indices.ndim != 1 or (indices.size and not np.issubdtype(indices.dtype, np.integer)):
         raise ValueError(
-            f"the argument 'order' has type {indices.dtype} and shape {indices.shape}; expected a list of integers: "
-            "for each step, the row number of the vector to learn from"
+            f"the argument 'order' has type {indices.dtype} and shape {indices.shape}; expected one integer for each "
+            "step: the row number of the vector to learn from"
         )
     if indices.size and (indices.min() < 0 or indices.max() >= rows):
         raise ValueError(

@@ -31,10 +31,10 @@ class Together:
             ValueError: the maps differ in their number of units or their precision.
         """
         if len({(len(som.weights), som.dtype) for som in maps}) != 1:
+            found = [(len(som.weights), str(som.dtype)) for som in maps]
             raise ValueError(
-                "the maps differ in their number of units or data type "
-                f"({[(len(som.weights), str(som.dtype)) for som in maps]}): give maps with the same number of units "
-                "and the same data type"
+                f"the maps differ in their numbers of units or in their data types ({found}): give maps with the same "
+                "number of units and the same data type"
             )
         self._dtype = maps[0].dtype
         lookups = [som.lookup for som in maps]

@@ -40,7 +40,7 @@ def test_of_any_size_by_distances(units: tuple[int, int]) -> None:
 
 
 def test_maps_must_be_alike() -> None:
-    with pytest.raises(ValueError, match="differ in their number of units or data type"):
+    with pytest.raises(ValueError, match="differ in their numbers of units or in their data types"):
         Together([*maps_of(3), *maps_of(3, units=(2, 2))])
-    with pytest.raises(ValueError, match="differ in their number of units or data type"):
+    with pytest.raises(ValueError, match="differ in their numbers of units or in their data types"):
         Together([*maps_of(3), *maps_of(3, dtype=np.float64)])

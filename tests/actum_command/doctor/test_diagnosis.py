@@ -235,8 +235,10 @@ def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.M
     system.also = ("pose_preprocessor", second)
     code, output = diagnosed(monkeypatch, system)
     assert code == 1
-    assert "more than one instance of pose_preprocessor runs, so every action is answered more than once" in output
-    assert f"stop all but one of these instances: a on lab, {second} on lab" in output
+    assert (
+        f"more than one instance of pose_preprocessor runs (a on lab, {second} on lab), so every action is answered "
+        "more than once: stop all instances but one"
+    ) in output
 
 
 def test_where_there_is_no_room_for_a_table_there_are_lines_of_whole_words() -> None:
