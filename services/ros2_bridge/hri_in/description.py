@@ -1,0 +1,107 @@
+"""The URDF of a body, as ROS4HRI's detectors publish it: which links it has, where, and what moves them."""
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from xml.etree.ElementTree import Element, ParseError, fromstring
+
+from ros2_bridge.hri.human_model import Link
+from ros2_bridge.hri_in.body_joints import BODY
+from ros2_bridge.rotations import X_AXIS, Y_AXIS, Z_AXIS, Point, Quaternion, about, product
+
+MOST_LINKS = 128
+"""Most links of a body: human_description's has 27, ours 50. All are placed in each image."""
+LONGEST_M = 10.0
+"""Largest coordinate of a link in its parent."""
+MOVING = ("revolute", "continuous", "prismatic")
+"""The kinds of joints that move."""
+UNIT_TOLERANCE = 1e-3
+"""How far the length of an axis may be from 1: publishers round."""
+
+
+class BadDescriptionError(ValueError):
+    """An URDF that describes no body; the text says why."""
+
+
+def links_of(urdf: str, body_id: str) -> tuple[Link, ...]:
+    """Return the links of a body's model below its frame, parents first, by their names without the id.
+
+    Raises:
+        BadDescriptionError: it is no URDF, or not one of this body.
+    """
+    if "<!DOCTYPE" in urdf:
+        raise BadDescriptionError("it contains a document type, which an URDF does not need")
+    try:
+        joints = fromstring(urdf).findall("joint")
+    except (ParseError, ValueError) as error:
+        raise BadDescriptionError(f"it is no XML: {error}") from None
+    if len(joints) > MOST_LINKS:
+        raise BadDescriptionError(f"it has {len(joints)} joints; at most {MOST_LINKS} are allowed")
+    below: defaultdict[str, list[Link]] = defaultdict(list)
+    for joint in joints:
+        link = _link(joint, f"_{body_id}")
+        below[link.parent].append(link)
+    links = tuple(_ordered(BODY, below))
+    if not links:
+        raise BadDescriptionError(f"it has no link below body_{body_id}")
+    return links
+
+
+def _ordered(parent: str, below: Mapping[str, list[Link]]) -> Iterator[Link]:
+    """Yield what hangs on a link, parents first; a link of two parents is an error, so that there are no circles."""
+    found, waiting = {parent}, [parent]
+    while waiting:
+        for link in below.get(waiting.pop(), ()):
+            if link.name in found:
+                raise BadDescriptionError(f"the link {link.name} hangs on two joints")
+            found.add(link.name)
+            waiting.append(link.name)
+            yield link
+
+
+def _link(joint: Element, suffix: str) -> Link:
+    """Return the link that a joint holds.
+
+    `head` counts as the middle of the sphere that human_description draws: its link lies ahead of it.
+    """
+    name, parent = (_of(joint, element, "link").removesuffix(suffix) for element in ("child", "parent"))
+    x, y, z = _numbers(joint, "origin", "xyz", "0 0 0", LONGEST_M)
+    kind = joint.get("type", "")
+    axis = _numbers(joint, "axis", "xyz", "1 0 0", 1.0 + UNIT_TOLERANCE) if kind in MOVING else (0.0, 0.0, 0.0)
+    if kind in MOVING and abs(math.hypot(*axis) - 1) > UNIT_TOLERANCE:
+        raise BadDescriptionError(f"the axis {axis} of the joint above {name} has not the length 1")
+    return Link(
+        name,
+        parent,
+        (0.0 if name == "head" else x, y, z),
+        joint.get("name", "").removesuffix(suffix) if kind in MOVING else None,
+        axis,
+        slides=kind == "prismatic",
+        turned=_turned(*_numbers(joint, "origin", "rpy", "0 0 0", 2 * math.pi)),
+    )
+
+
+def _turned(roll: float, pitch: float, yaw: float) -> Quaternion:
+    """Return the rotation of an URDF's `rpy` (rad): about the fixed axes x, y, z, one after the other."""
+    return product(about(Z_AXIS, yaw), product(about(Y_AXIS, pitch), about(X_AXIS, roll)))
+
+
+def _of(joint: Element, element: str, attribute: str, otherwise: str = "") -> str:
+    found = joint.find(element)
+    return otherwise if found is None else found.get(attribute, otherwise)
+
+
+def _numbers(joint: Element, element: str, attribute: str, otherwise: str, largest: float) -> Point:
+    """Return three numbers of an element's attribute.
+
+    Raises:
+        BadDescriptionError: they are not three, or one is larger than `largest`.
+    """
+    text = _of(joint, element, attribute, otherwise)
+    try:
+        x, y, z = (float(each) for each in text.split())
+    except ValueError:
+        raise BadDescriptionError(f"{attribute}={text!r} of a joint's {element} is not three numbers") from None
+    if not all(abs(each) <= largest for each in (x, y, z)):
+        raise BadDescriptionError(f"{attribute}={text!r} of a joint's {element} is larger than {largest:g}")
+    return x, y, z
