@@ -12,7 +12,7 @@ pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
 from people import STANDING, reaching, turned
 from ros2_bridge.hri.human_model import FOREARM_M, LINKS, link_places
-from ros2_bridge.hri_in.description import MOST_LINKS, BadDescriptionError, links_of
+from ros2_bridge.hri_in.description import MOST_LINKS, SHOULDERS_M, USUAL_LINKS, BadDescriptionError, links_of
 from ros2_bridge.hri_out.body import body_of
 from ros2_bridge.hri_out.personal_model import PERSONAL_LINKS, urdf
 
@@ -33,11 +33,19 @@ def test_human_descriptions_urdf_gives_the_links_that_count_without_one() -> Non
     described = links_of(human_model.urdf("ab", FOREARM_M), "ab")
     for _ in range(20):
         angles = {name: float(angle) for name, angle in zip(UPRIGHT, rng.uniform(-2, 2, len(UPRIGHT)), strict=True)}
-        ours = link_places(angles)
+        ours = link_places(angles, USUAL_LINKS)
         theirs = link_places(angles, described)
         assert ours.keys() == theirs.keys()
         for name in ours:
             assert theirs[name] == pytest.approx(ours[name]), name
+
+
+def test_human_descriptions_arms_begin_where_depth_cameras_have_the_shoulders() -> None:
+    usual, measured = link_places(UPRIGHT), link_places(UPRIGHT, USUAL_LINKS)
+    arms = {name for name in usual if name.endswith(("shoulder", "elbow", "wrist"))}
+    for name in usual:
+        moved = np.array(measured[name]) - usual[name]
+        assert moved == pytest.approx(SHOULDERS_M if name in arms else (0, 0, 0)), name
 
 
 @pytest.mark.parametrize("joints", [STANDING, reaching(1.0), turned(reaching(0.5, 0.7), 2.5)])

@@ -4,7 +4,7 @@ from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from ros2_bridge.hri.human_model import LINKS, Link, joints_of_model, link_places
+from ros2_bridge.hri.human_model import Link, joints_of_model, link_places
 from ros2_bridge.hri.placements import Placement
 from ros2_bridge.hri_in.body_joints import BODY, joints_of
 from ros2_bridge.hri_in.transform_tree import HISTORY, TransformTree
@@ -37,7 +37,7 @@ class Body:
         has_3d, has_2d: whether joints in space, or points in an image, were received since the last review.
     """
 
-    def __init__(self, body_id: str, number: int, optical_frame: str, links: Sequence[Link] = LINKS) -> None:
+    def __init__(self, body_id: str, number: int, optical_frame: str, links: Sequence[Link]) -> None:
         self.number = number
         self.is_awaited = True
         self.has_3d = self.has_2d = False

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from actum.messages import MOST_AGENTS, Agent, Joint, Skeleton
 from actum.node import SECOND_NS, Counters
 from actum.stamps import Order, StampGuard
-from ros2_bridge.hri.human_model import LINKS, Link
+from ros2_bridge.hri.human_model import Link
 from ros2_bridge.hri_in.body import Body, Found
+from ros2_bridge.hri_in.description import USUAL_LINKS
 from ros2_bridge.hri_in.transform_tree import TransformTree
 from ros2_bridge.rotations import rotated
 
@@ -154,7 +155,7 @@ class SkeletonAssembler:
         self._numbers.move_to_end(body_id)
         if len(self._numbers) > MOST_NUMBERED:
             self._numbers.popitem(last=False)
-        links = self._models.get(body_id, LINKS)
+        links = self._models.get(body_id, USUAL_LINKS)
         return Body(body_id, self._numbers[body_id], self._optical_frame, links)
 
     def _begin_anew(self) -> None:
