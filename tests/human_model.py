@@ -46,7 +46,7 @@ def poses(angles: dict[str, float]) -> dict[str, Array]:
     found = {"body": np.eye(4)}
     for child, parent, joint, axis, origin in JOINTS:
         placed = np.eye(4)
-        placed[:3, :3], placed[:3, 3] = _about(np.array(axis, float), angles.get(joint, 0.0)), origin
+        placed[:3, :3], placed[:3, 3] = about(np.array(axis, float), angles.get(joint, 0.0)), origin
         found[child] = found[parent] @ placed
     return found
 
@@ -73,7 +73,7 @@ def _written(body_id: str, unit_m: float, child: str, parent: str, joint: str, a
     )
 
 
-def _about(axis: Array, angle: float) -> Array:
+def about(axis: Array, angle: float) -> Array:
     """Rodrigues' formula."""
     x, y, z = axis
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
