@@ -11,7 +11,7 @@ from ros2_bridge.hri_in.body_joints import BODY, MODEL_SHOULDERS
 from ros2_bridge.rotations import X_AXIS, Y_AXIS, Z_AXIS, Point, Quaternion, about, product
 
 MOST_LINKS = 128
-"""Most links of a body: human_description's has 27, ours 50. All are placed in each image."""
+"""Most links of a body: human_description's has 26, ours 52. All are placed in each image."""
 LONGEST_M = 10.0
 """Largest coordinate of a link in its parent."""
 MOVING = ("revolute", "continuous", "prismatic")
@@ -88,17 +88,17 @@ def _ordered(parent: str, below: Mapping[str, list[Link]]) -> Iterator[Link]:
 def _link(joint: Element, suffix: str) -> Link:
     """Return the link that a joint holds."""
     name, parent = (_of(joint, element, "link").removesuffix(suffix) for element in ("child", "parent"))
-    kind = joint.get("type", "")
-    axis = _numbers(joint, "axis", "xyz", "1 0 0", 1.0 + UNIT_TOLERANCE) if kind in MOVING else (0.0, 0.0, 0.0)
-    if kind in MOVING and abs(math.hypot(*axis) - 1) > UNIT_TOLERANCE:
+    joint_type = joint.get("type", "")
+    axis = _numbers(joint, "axis", "xyz", "1 0 0", 1.0 + UNIT_TOLERANCE) if joint_type in MOVING else (0.0, 0.0, 0.0)
+    if joint_type in MOVING and abs(math.hypot(*axis) - 1) > UNIT_TOLERANCE:
         raise BadDescriptionError(f"the axis {axis} of the joint above {name} has not the length 1")
     return Link(
         name,
         parent,
         _numbers(joint, "origin", "xyz", "0 0 0", LONGEST_M),
-        joint.get("name", "").removesuffix(suffix) if kind in MOVING else None,
+        joint.get("name", "").removesuffix(suffix) if joint_type in MOVING else None,
         axis,
-        slides=kind == "prismatic",
+        slides=joint_type == "prismatic",
         turned=_turned(*_numbers(joint, "origin", "rpy", "0 0 0", 2 * math.pi)),
     )
 

@@ -99,8 +99,8 @@ def urdf(body_id: str) -> str:
     for name in ("body", *(link.name for link in PERSONAL_LINKS)):
         SubElement(robot, "link", name=f"{name}_{body_id}")
     for link in PERSONAL_LINKS:
-        kind = "fixed" if link.joint is None else "prismatic" if link.slides else "continuous"
-        joint = SubElement(robot, "joint", name=f"{link.joint or link.name}_{body_id}", type=kind)
+        joint_type = "fixed" if link.joint is None else "prismatic" if link.slides else "continuous"
+        joint = SubElement(robot, "joint", name=f"{link.joint or link.name}_{body_id}", type=joint_type)
         SubElement(joint, "parent", link=f"{link.parent}_{body_id}")
         SubElement(joint, "child", link=f"{link.name}_{body_id}")
         SubElement(joint, "origin", xyz=_written(link.origin_m))
