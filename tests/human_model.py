@@ -46,12 +46,34 @@ def poses(angles: dict[str, float]) -> dict[str, Array]:
     found = {"body": np.eye(4)}
     for child, parent, joint, axis, origin in JOINTS:
         placed = np.eye(4)
-        placed[:3, :3], placed[:3, 3] = _about(np.array(axis, float), angles.get(joint, 0.0)), origin
+        placed[:3, :3], placed[:3, 3] = about(np.array(axis, float), angles.get(joint, 0.0)), origin
         found[child] = found[parent] @ placed
     return found
 
 
-def _about(axis: Array, angle: float) -> Array:
+def urdf(body_id: str, unit_m: float) -> str:
+    """The model as `xacro` writes it, without what is drawn; the head's link lies ahead of the middle of the head."""
+    head = ("head", "p_head", "", (0.0, 0.0, 0.0), (0.25, 0.0, 0.5))
+    joints = [*JOINTS, head]
+    links = [f'<link name="{name}_{body_id}"/>' for name in ("body", *(child for child, *_ in joints))]
+    return "\n".join(
+        ['<?xml version="1.0" ?>', "<!-- made by xacro -->", '<robot name="human">', *links]
+        + [_written(body_id, unit_m, *joint) for joint in reversed(joints)]
+        + ["</robot>"]
+    )
+
+
+def _written(body_id: str, unit_m: float, child: str, parent: str, joint: str, axis: object, origin: object) -> str:
+    kind = f'type="{"revolute" if joint else "fixed"}"'
+    at = " ".join(str(unit_m * each) for each in np.array(origin, float))
+    turning = f'<axis xyz="{" ".join(map(str, np.array(axis, float)))}"/>' if joint else ""
+    return (
+        f'<joint name="{joint or child}_{body_id}" {kind}><parent link="{parent}_{body_id}"/>'
+        f'<child link="{child}_{body_id}"/><origin rpy="0 0 0" xyz="{at}"/>{turning}</joint>'
+    )
+
+
+def about(axis: Array, angle: float) -> Array:
     """Rodrigues' formula."""
     x, y, z = axis
     across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])

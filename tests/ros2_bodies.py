@@ -95,6 +95,11 @@ def joint_states(stamp_ns: int, body_id: str, angles_rad: Mapping[str, float]) -
     return Foreign(topics.OTHERS_JOINT_STATES.name, written(hri.JOINT_STATE, fields), key)
 
 
+def urdf(body_id: str, text: str) -> Foreign:
+    key = f"0/humans/bodies/{body_id}/urdf/type/hash"
+    return Foreign(topics.OTHERS_URDF.name, written(types.STRING, {"data": text}), key)
+
+
 def skeleton_2d(stamp_ns: int, body_id: str) -> Foreign:
     point = {"x": 0.5, "y": 0.5, "c": 0.9}
     payload = written(hri.SKELETON_2D, {"header": header(stamp_ns), "skeleton": [point] * 18})

@@ -5,8 +5,9 @@ read again by another. Whoever changes a way back chooses it by the people with 
 a model of the others; those with even numbers, answered by a model of all the odd ones, are for the test.
 
 What goes over, as bytes, are the frames of the joints on /tf; those alone that human_description has, which lacks the
-middle of the trunk; or joint_states, the angles of human_description's joints, whose bones have lengths of their own
-and whose shoulders keep still. All else is the code that runs live.
+middle of the trunk; joint_states with the URDF that the bridge publishes beside them; or joint_states alone, of which
+only the angles of human_description's joints count, whose bones have lengths of their own and whose shoulders keep
+still. All else is the code that runs live.
 """
 
 from collections import defaultdict
@@ -35,8 +36,9 @@ FRAME = "camera_optical_frame"
 LATER_NS = SECOND_NS
 """Recordings start at 0, which in ROS means that there is no stamp (ns)."""
 READ = ("/tf", "/humans/bodies/tracked")
-"""The topics that go over, those of joint angles beside them."""
-ALL, OF_THE_MODEL, ANGLES = "frames on /tf", "of human_description alone", "joint_states"
+"""The topics that go over, beside those of each body."""
+ALL, OF_THE_MODEL = "frames on /tf", "of human_description alone"
+DESCRIBED, ANGLES = "joint_states and urdf", "joint_states alone"
 """The ways that skeletons take."""
 PLAIN = "as recorded"
 """No way at all."""
@@ -51,9 +53,9 @@ class ThroughRos(Recording):
 
     def __init__(self, path: Path, way: str) -> None:
         super().__init__(path)
-        chosen: set[TopicName] = {"tf", "bodies"} if way == ANGLES else {"tf", "bodies", "body_links"}
-        self._way = way
-        self._out = Ros2Bridge(Settings(ros_frame_id=FRAME, ros_topics=frozenset(chosen)))
+        links: set[TopicName] = {"body_links"} if way in (ALL, OF_THE_MODEL) else set()
+        self._way, self._leaves = way, ("joint_states", "urdf") if way == DESCRIBED else ("joint_states",)
+        self._out = Ros2Bridge(Settings(ros_frame_id=FRAME, ros_topics=frozenset({"tf", "bodies"} | links)))
         self._back = Ros2Bridge(Settings(ros_frame_id=FRAME, ros_bodies=True))
         self._out.foreign_node("out")
         self._back.foreign_node("back")
@@ -76,7 +78,7 @@ class ThroughRos(Recording):
     def _sent(self, message: Skeleton) -> Iterator[Skeleton]:
         """Yield the skeletons that come back once one was published."""
         for output in self._out.handle(message.model_copy(update={"stamp_ns": message.stamp_ns + LATER_NS})):
-            if isinstance(output, Foreign) and (output.topic in READ or output.topic.endswith("joint_states")):
+            if isinstance(output, Foreign) and (output.topic in READ or output.topic.endswith(self._leaves)):
                 put = _without_trunk(output) if self._way == OF_THE_MODEL else output
                 for skeleton in self._back.receive(_received(put)):
                     assert isinstance(skeleton, Skeleton)
@@ -94,8 +96,8 @@ def _without_trunk(put: Foreign) -> Foreign:
 
 def _received(put: Foreign) -> Foreign:
     """Return a payload as it is received, where the topics of all bodies have one name."""
-    of_body = put.topic.endswith("joint_states")
-    name = "/humans/bodies/*/joint_states" if of_body else put.topic
+    leaf = put.topic.rpartition("/")[2]
+    name = f"/humans/bodies/*/{leaf}" if leaf in ("joint_states", "urdf") else put.topic
     return Foreign(name, put.payload, f"0{put.topic}/type/hash")
 
 
@@ -128,7 +130,7 @@ def _compared(splits: Sequence[Split]) -> Iterator[str]:
     for learnt, tested in splits:
         model = train(samples_from(learnt).usable, DEFAULT, SEED)
         found[PLAIN] |= answers(model, tested)
-        for way in (ALL, OF_THE_MODEL, ANGLES):
+        for way in (ALL, OF_THE_MODEL, DESCRIBED, ANGLES):
             found[way] |= answers(model, [ThroughRos(each.path, way) for each in tested])
     plain = found[PLAIN]
     for way, given in found.items():

@@ -255,6 +255,10 @@ OF_BRIDGE: Mapping[str, Problem] = {
         "`/humans/bodies/tracked` contains an id that no ROS 2 topic can have; this body is left out.",
         "Use letters, digits and underscores, at most 64 of them.",
     ),
+    "bad_body_description": Problem(
+        "A text on `/humans/bodies/<id>/urdf` does not describe a body; human_description's bones are used instead.",
+        "Publish the URDF that `xacro` makes of human_description.",
+    ),
     "too_many_bodies": Problem(
         "`/humans/bodies/tracked` contains more than 64 bodies; the first 64 are used.",
         "Check the body detector.",

@@ -65,7 +65,7 @@ ROS_MARKS = (f"{BASE}/{{}}/mark",)
 """What it subscribes to."""
 ROS_BODIES = (
     *("humans/bodies/tracked", "humans/bodies/*/joint_states", "humans/bodies/*/skeleton2d"),
-    *("tf", "tf_static"),
+    *("humans/bodies/*/urdf", "tf", "tf_static"),
 )
 """What it also subscribes to where the bodies that ROS 2 nodes track become skeletons; it publishes there, too.
 

@@ -13,6 +13,7 @@ Quaternion = tuple[float, float, float, float]
 X_AXIS: Point = (1.0, 0.0, 0.0)
 Y_AXIS: Point = (0.0, 1.0, 0.0)
 Z_AXIS: Point = (0.0, 0.0, 1.0)
+NOT_TURNED: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
 
 def about(axis: Vector, angle_rad: float) -> Quaternion:

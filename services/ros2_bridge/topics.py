@@ -45,6 +45,7 @@ OTHERS_TF = RosTopic("/tf", types.TF_MESSAGE, OTHERS, depth=100)
 OTHERS_TF_STATIC = RosTopic("/tf_static", types.TF_MESSAGE, OTHERS, latched=True)
 OTHERS_JOINT_STATES = RosTopic("/humans/bodies/*/joint_states", hri.JOINT_STATE, OTHERS)
 OTHERS_SKELETON_2D = RosTopic("/humans/bodies/*/skeleton2d", hri.SKELETON_2D, OTHERS)
+OTHERS_URDF = RosTopic("/humans/bodies/*/urdf", types.STRING, OTHERS, depth=1, latched=True)
 BODIES_TRACKED = RosTopic("/humans/bodies/tracked", hri.IDS_LIST, "bodies")
 PERSONS_TRACKED = RosTopic("/humans/persons/tracked", hri.IDS_LIST, "persons")
 CANDIDATE_MATCHES = RosTopic("/humans/candidate_matches", hri.IDS_MATCH, "persons")
@@ -55,7 +56,10 @@ PUBLISHED = (
     *(BODIES_TRACKED, PERSONS_TRACKED, CANDIDATE_MATCHES, INTENTS),
 )
 """Published as long as the bridge runs. Those of one body or person, in `ros2_bridge.hri_out.present`, come and go."""
-SUBSCRIBED = (MARK, OTHERS_TRACKED, OTHERS_TF, OTHERS_TF_STATIC, OTHERS_JOINT_STATES, OTHERS_SKELETON_2D)
+SUBSCRIBED = (
+    *(MARK, OTHERS_TRACKED, OTHERS_TF, OTHERS_TF_STATIC, OTHERS_JOINT_STATES, OTHERS_SKELETON_2D),
+    OTHERS_URDF,
+)
 
 
 def node(settings: Settings, session_id: str) -> ForeignNode:

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 
+import human_model
 from conftest import NEEDS_ROS2_EXTRA
 
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
@@ -33,11 +34,12 @@ from ros2_bodies import (
     tf_static,
     tracked,
     transform,
+    urdf,
 )
 from ros2_bridge import topics
 from ros2_bridge.bridge import Ros2Bridge
+from ros2_bridge.hri.human_model import FOREARM_M, LINKS, NECK_M, TORSO_M, UPPER_ARM_M
 from ros2_bridge.hri_in.body_reader import LONGEST_NAME
-from ros2_bridge.hri_in.human_model import FOREARM_M, LINKS, NECK_M, TORSO_M, UPPER_ARM_M
 from ros2_bridge.hri_in.transform_tree import HISTORY, MOST_FRAMES
 from ros2_bridge.settings import Settings
 
@@ -203,6 +205,40 @@ def test_joint_states_become_joints_by_the_human_model() -> None:
     assert seen[INDEX["torso"]] == pytest.approx([0, -(TORSO_M + NECK_M) / 2, 0])
     assert np.linalg.norm(seen[INDEX["right_elbow"]] - seen[INDEX["right_shoulder"]]) == pytest.approx(UPPER_ARM_M)
     assert seen[INDEX["right_hand"]] - seen[INDEX["right_elbow"]] == pytest.approx([FOREARM_M, 0, 0])
+
+
+@pytest.mark.parametrize("is_tracked", [False, True], ids=["before its body", "after its body"])
+def test_a_bodys_urdf_gives_the_lengths_of_its_bones(is_tracked: bool) -> None:
+    made = bridge()
+    if is_tracked:
+        given_to(made, [tracked(FIRST_NS, "ab")])
+    given_to(made, [urdf("ab", human_model.urdf("ab", unit_m=0.2)), urdf("cd", human_model.urdf("cd", unit_m=0.3))])
+    found = given_to(made, (
+        each for stamp_ns in stamps(5)
+        for each in (
+            tracked(stamp_ns, "ab"),
+            tf(transform(stamp_ns, "body_ab", (0.5, 0.2, 2.0), UPRIGHT_IN_OPTICAL)),
+            joint_states(stamp_ns, "ab", UPRIGHT),
+        )
+    ))  # fmt: skip
+    seen = joints(found[-1])
+    assert np.linalg.norm(seen[INDEX["right_hand"]] - seen[INDEX["right_elbow"]]) == pytest.approx(0.2)
+    assert np.linalg.norm(seen[INDEX["left_hip"]] - seen[INDEX["right_hip"]]) == pytest.approx(0.24)
+
+
+def test_models_of_bodies_that_never_come_are_forgotten() -> None:
+    made = bridge()
+    text = human_model.urdf("", unit_m=0.2)
+    flood = [urdf(f"b{i}", text.replace('_"', f'_b{i}"')) for i in range(3 * MOST_AGENTS)]
+    given_to(made, flood[:MOST_AGENTS])
+    gc.collect()
+    tracemalloc.start()
+    given_to(made, flood[MOST_AGENTS:])
+    gc.collect()
+    kept_bytes, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert made.counters.rejects == {}
+    assert kept_bytes < MOST_AGENTS * 50_000
 
 
 def test_frames_count_more_than_joint_states() -> None:
@@ -389,6 +425,7 @@ def test_one_stamp_of_the_future_does_not_end_the_stream() -> None:
         (tf(transform(0, "head_ab", (0, 0, 0))), "bad_body_stamp"),
         (tracked(0, "ab"), "bad_body_stamp"),
         (tracked(FIRST_NS, "a/b"), "bad_body_id"),
+        (urdf("ab", "<robot"), "bad_body_description"),
         (tracked(FIRST_NS, "a" * 65), "bad_body_id"),
         (tracked(FIRST_NS, *(f"b{i}" for i in range(MOST_AGENTS + 1))), "too_many_bodies"),
     ],
@@ -454,7 +491,7 @@ def test_bodies_are_subscribed_to_only_if_they_are_wanted() -> None:
     assert keys_of(Settings()) == ["0/actum/kinect0/mark"]
     assert keys_of(Settings(ros_bodies=True, ros_frame_id=OPTICAL, ros_topics="event")) == [
         "0/humans/bodies/tracked", "0/tf", "0/tf_static", "0/humans/bodies/*/joint_states",
-        "0/humans/bodies/*/skeleton2d",
+        "0/humans/bodies/*/skeleton2d", "0/humans/bodies/*/urdf",
     ]  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from human_model import poses
-from ros2_bridge.hri_in.human_model import (
+from ros2_bridge.hri.human_model import (
     FOREARM_M,
     HEAD_RADIUS_M,
     LINKS,
@@ -19,7 +19,7 @@ from ros2_bridge.hri_in.human_model import (
     WAIST_M,
     link_places,
 )
-from ros2_bridge.hri_in.placements import Placement, placement
+from ros2_bridge.hri.placements import Placement, placement
 from ros2_bridge.rotations import about, rotated
 
 UPRIGHT = {link.joint: 0.0 for link in LINKS if link.joint is not None}

@@ -20,7 +20,7 @@ from ros2_bridge.settings import Settings
 from ros2_bridge.topics import PUBLISHED, RosTopic
 
 AT_NS = 7_000_000_008
-BODY_TOPICS = {"joint_states", "posture", "roi", "skeleton2d"}
+BODY_TOPICS = {"joint_states", "urdf", "posture", "roi", "skeleton2d"}
 PERSON_TOPICS = {"body_id", "anonymous", "location_confidence", "action"}
 
 
@@ -153,12 +153,12 @@ def test_links_and_persons_are_left_out_where_they_are_not_chosen() -> None:
     assert "/tf" not in without_tf.said
 
 
-def test_joint_states_have_the_models_names_with_the_bodys_id() -> None:
+def test_joint_states_have_the_names_of_the_persons_own_model_with_the_bodys_id() -> None:
     room = Room().handle(skeleton(AT_NS, STANDING))
     [body], state, expected = room.bodies, room.of_body("joint_states"), body_of(STANDING)
     assert expected is not None
     assert dict(zip(state.name, state.position, strict=True)) == {
-        f"{joint}_{body}": angle for joint, angle in expected.angles.items()
+        f"{joint}_{body}": position for joint, position in (expected.angles | expected.shifts_m).items()
     }
     assert (state.header.stamp.sec, state.header.stamp.nanosec) == (7, 8)
 

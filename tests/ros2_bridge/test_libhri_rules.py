@@ -20,6 +20,8 @@ LISTS = {
 """hri/src/hri/hri.cpp, HRIListener::HRIListener: subscribed to from the root, with the default quality of service."""
 OF_BODY = {"roi": "NormalizedRegionOfInterest2D_", "skeleton2d": "Skeleton2D_"}
 """hri/src/hri/body.cpp, Body::Body: below kNs_, `/humans/bodies/<id>` (hri/src/hri/feature_tracker.cpp)."""
+LATCHED_OF_BODY = {"urdf": "String_"}
+"""hri_fullbody 2.1.0, hri_fullbody/fullbody_detector.py: `latching_qos`; one text, when the body comes."""
 LATCHED = {"body_id": "String_", "anonymous": "Bool_"}
 """hri/src/hri/person.cpp, Person::Person: subscribed to as reliable and transient local, `latched_qos`."""
 
@@ -46,8 +48,9 @@ def test_a_bodys_topics_are_below_its_id_with_their_types(room: Room) -> None:
 
 def test_what_is_subscribed_to_as_transient_local_is_published_so(room: Room) -> None:
     """A volatile publisher and a transient local subscriber do not match in ROS 2."""
-    for leaf, typed in LATCHED.items():
-        topic = f"/humans/persons/{room.persons[0]}/{leaf}"
+    of_person = {f"/humans/persons/{room.persons[0]}/{leaf}": typed for leaf, typed in LATCHED.items()}
+    of_body = {f"/humans/bodies/{room.bodies[0]}/{leaf}": typed for leaf, typed in LATCHED_OF_BODY.items()}
+    for topic, typed in (of_person | of_body).items():
         assert kind(room, topic) == typed
         assert room.declared[topic].latched
         assert "/:1:,1:" in room.declared[topic].token

@@ -32,8 +32,13 @@ LEANING = STANDING + np.array(
 """A person whose trunk is bent towards the camera."""
 
 
-def there_and_back(joints: np.ndarray, *chosen: TopicName) -> np.ndarray:
-    """The joints that come back last of a person who stands still."""
+SHRUGGING = STANDING + np.array([[0.1, 0, 0]]) * (STANDING[:, 1:2] < 0)
+SHRUGGING[INDEX["left_shoulder"]] += [0.02, -0.06, -0.03]
+
+
+def there_and_back(joints: np.ndarray, *chosen: TopicName, described: bool = True) -> np.ndarray:
+    """The joints that come back last of a person who stands still, with the body's URDF or without."""
+    read = ("/tf", "/tracked", "/joint_states", *(["/urdf"] if described else []))
     out = Ros2Bridge(Settings(ros_frame_id=FRAME, ros_topics=frozenset(chosen)))
     back = Ros2Bridge(Settings(ros_frame_id=FRAME, ros_bodies=True))
     out.foreign_node("out")
@@ -42,7 +47,7 @@ def there_and_back(joints: np.ndarray, *chosen: TopicName) -> np.ndarray:
     def came() -> Iterator[Skeleton]:
         for i in range(8):
             for put in out.handle(skeleton(SECOND_NS + i * FRAME_NS, joints)):
-                if isinstance(put, Foreign) and put.topic.endswith(("/tf", "/tracked", "/joint_states")):
+                if isinstance(put, Foreign) and put.topic.endswith(read):
                     yield from back.receive(received(put))  # type: ignore[misc]
 
     *_, last = came()
@@ -50,9 +55,14 @@ def there_and_back(joints: np.ndarray, *chosen: TopicName) -> np.ndarray:
     return np.array([[np.nan] * 3 if joint is None else joint for joint in agent.joints])
 
 
+def by_angles(joints: np.ndarray) -> np.ndarray:
+    """The joints that come back by the angles of human_description's joints alone."""
+    return there_and_back(joints, "tf", "bodies", described=False)
+
+
 def received(put: Foreign) -> Foreign:
-    of_body = put.topic.endswith("joint_states")
-    name = "/humans/bodies/*/joint_states" if of_body else put.topic
+    leaf = put.topic.rpartition("/")[2]
+    name = f"/humans/bodies/*/{leaf}" if leaf in ("joint_states", "urdf") else put.topic
     return Foreign(name, put.payload, f"0{put.topic}/type/hash")
 
 
@@ -67,6 +77,7 @@ PEOPLE = {
     "turned away": turned(STANDING, 2.5),
     "a child": reaching(0.5, 0.7),
     "leaning": LEANING,
+    "shrugging and leaning aside": SHRUGGING,
 }
 
 
@@ -76,8 +87,13 @@ def test_by_frames_every_joint_is_where_it_was(joints: np.ndarray) -> None:
 
 
 @pytest.mark.parametrize("joints", PEOPLE.values(), ids=PEOPLE)
-def test_by_angles_every_limb_points_where_it_did(joints: np.ndarray) -> None:
-    off = np.abs(directions(there_and_back(joints, "tf", "bodies")) - directions(joints)).max(axis=1)
+def test_by_joint_states_and_the_urdf_every_joint_is_where_it_was(joints: np.ndarray) -> None:
+    np.testing.assert_allclose(there_and_back(joints, "tf", "bodies"), joints, atol=1e-6)
+
+
+@pytest.mark.parametrize("joints", PEOPLE.values(), ids=PEOPLE)
+def test_by_angles_alone_every_limb_points_where_it_did(joints: np.ndarray) -> None:
+    off = np.abs(directions(by_angles(joints)) - directions(joints)).max(axis=1)
     shanks = [child in (INDEX["left_foot"], INDEX["right_foot"]) for _, child in LIMBS]
     assert (off < np.where(shanks, STRAIGHT, 1e-6)).all(), off
 
@@ -86,9 +102,7 @@ def test_by_angles_a_straight_arm_keeps_its_hand() -> None:
     straight = STANDING.copy()
     shoulder, elbow = straight[INDEX["left_shoulder"]], straight[INDEX["left_elbow"]]
     straight[INDEX["left_hand"]] = elbow + (elbow - shoulder)
-    np.testing.assert_allclose(
-        directions(there_and_back(straight, "tf", "bodies"))[:2], directions(straight)[:2], atol=1e-6
-    )
+    np.testing.assert_allclose(directions(by_angles(straight))[:2], directions(straight)[:2], atol=1e-6)
 
 
 def test_by_angles_a_trunk_that_is_bent_stays_so() -> None:
@@ -97,13 +111,13 @@ def test_by_angles_a_trunk_that_is_bent_stays_so() -> None:
         along = joints[INDEX["neck"]] - hips
         return np.asarray(along / np.linalg.norm(along))
 
-    np.testing.assert_allclose(trunk(there_and_back(LEANING, "tf", "bodies")), trunk(LEANING), atol=0.01)
+    np.testing.assert_allclose(trunk(by_angles(LEANING)), trunk(LEANING), atol=0.01)
 
 
 def test_a_joint_that_is_not_seen_is_not_made_up_on_the_way() -> None:
     partial = lacking(STANDING, "left_hand", "right_knee", "right_foot")
     for chosen in (("tf", "bodies", "body_links"), ("tf", "bodies")):
-        found = there_and_back(partial, *chosen)  # type: ignore[arg-type]
+        found = there_and_back(partial, *chosen)
         assert np.isnan(found[INDEX["left_hand"]]).all()
         assert np.isnan(found[INDEX["right_foot"]]).all()
         assert not np.isnan(found[INDEX["left_elbow"]]).any()

@@ -1,5 +1,6 @@
 """The bridge as the source of a sensor: bodies that a ROS 2 node publishes arrive as skeletons, and postures."""
 
+import math
 import time
 from collections.abc import Iterator
 
@@ -8,6 +9,7 @@ import pytest
 import zenoh
 from zenoh import ext
 
+import human_model
 from actum import keys
 from actum.bridge import Foreign
 from actum.messages import Info, Posture, Skeleton, Status
@@ -20,7 +22,7 @@ from people import FRAME_NS, STANDING
 
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
-from ros2_bodies import OPTICAL, frames, one_frame, skeleton_2d, tf, tf_static, tracked, transform
+from ros2_bodies import OPTICAL, frames, joint_states, one_frame, skeleton_2d, tf, tf_static, tracked, transform, urdf
 from ros2_bridge.settings import Settings
 from ros2_bridge.topics import node
 
@@ -170,3 +172,31 @@ def test_people_of_one_sensor_go_over_ros_to_another_sensor(running: System) -> 
         theirs, ours = (it.agents[0].joints for it in (sent[skeleton.stamp_ns], skeleton))
         np.testing.assert_allclose(np.array(ours), np.array(theirs), atol=1e-5)
         assert skeleton.up_in_camera == pytest.approx([0, -1, 0], abs=1e-6)
+
+
+def test_a_bodys_urdf_that_was_published_before_the_bridge_came_counts(
+    running: System, detector: zenoh.Session
+) -> None:
+    described = urdf("ab", human_model.urdf("ab", unit_m=0.3))
+    publisher = ext.declare_advanced_publisher(
+        detector, key_of(described), cache=ext.CacheConfig(max_samples=1), publisher_detection=True
+    )
+    publisher.put(described.payload)
+    running.start("ros2_bridge", *FLAGS)
+    with running.client() as client:
+        running.wait_for_services(client, "ros2_bridge")
+        listening = client.listen(keys.pattern(keys.SKELETON, "kinect0"))
+
+        def has_the_bodys_bones() -> bool:
+            stamp_ns = time.time_ns()
+            put(detector, tracked(stamp_ns, "ab"), tf(transform(stamp_ns, "body_ab", (0, 0, 2))))
+            put(detector, joint_states(stamp_ns, "ab", dict.fromkeys(human_model.MOVABLE, 0.0)))
+            forearms_m: list[float] = []
+            while (received := listening.receive()) is not None:
+                if isinstance(received.message, Skeleton) and received.message.agents:
+                    joints = received.message.agents[0].joints
+                    forearms_m.append(math.dist(joints[INDEX["left_elbow"]] or (), joints[INDEX["left_hand"]] or ()))
+            return forearms_m[-1:] == [pytest.approx(0.3)]
+
+        wait_until(has_the_bodys_bones, "the body's bones are known")
+    publisher.undeclare()

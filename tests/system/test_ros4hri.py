@@ -34,6 +34,7 @@ OF_BODY = {
     "skeleton2d": hri.SKELETON_2D,
     "cropped": hri.IMAGE,
     "joint_states": hri.JOINT_STATE,
+    "urdf": types.STRING,
     "posture": hri.BODY_POSTURE,
     "gesture": hri.GESTURE,
 }

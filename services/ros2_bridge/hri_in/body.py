@@ -1,12 +1,12 @@
-"""One body that others track: its number with us, its joint angles of late, and where its joints are."""
+"""One body that others track: its number with us, its model, its joint angles of late, and where its joints are."""
 
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from ros2_bridge.hri.human_model import Link, joints_of_model, link_places
+from ros2_bridge.hri.placements import Placement
 from ros2_bridge.hri_in.body_joints import BODY, joints_of
-from ros2_bridge.hri_in.human_model import JOINTS, link_places
-from ros2_bridge.hri_in.placements import Placement
 from ros2_bridge.hri_in.transform_tree import HISTORY, TransformTree
 from ros2_bridge.rotations import Point
 
@@ -16,7 +16,7 @@ class Found(NamedTuple):
 
     Attributes:
         joints: (m) in our order, in the camera's optical frame; None where one is unknown.
-        by_frames: whether they are frames of TF; otherwise the human model's, from angles of joints.
+        by_frames: whether they are frames of TF; otherwise the body's model's, from angles of joints.
     """
 
     joints: list[Point | None]
@@ -37,24 +37,29 @@ class Body:
         has_3d, has_2d: whether joints in space, or points in an image, were received since the last review.
     """
 
-    def __init__(self, body_id: str, number: int, optical_frame: str) -> None:
+    def __init__(self, body_id: str, number: int, optical_frame: str, links: Sequence[Link]) -> None:
         self.number = number
         self.is_awaited = True
         self.has_3d = self.has_2d = False
         self._suffix = f"_{body_id}"
         self._optical_frame = optical_frame
-        self._angles_rad: OrderedDict[int, Mapping[str, float]] = OrderedDict()
+        self._positions: OrderedDict[int, Mapping[str, float]] = OrderedDict()
+        self._links, self._joints = links, joints_of_model(links)
         self._last: Found | None = None
 
-    def take_angles(self, stamp_ns: int, names: list[str], angles_rad: list[float]) -> None:
-        """Note the angles (rad) of the model's joints at an instant, by names that end in the body's id."""
-        pairs = zip((name.removesuffix(self._suffix) for name in names), angles_rad, strict=False)
-        self._angles_rad[stamp_ns] = {name: angle for name, angle in pairs if name in JOINTS}
-        if len(self._angles_rad) > HISTORY:
-            self._angles_rad.popitem(last=False)
+    def describe(self, links: Sequence[Link]) -> None:
+        """Take the links of the body's model, in place of those that it had."""
+        self._links, self._joints = links, joints_of_model(links)
+
+    def take_positions(self, stamp_ns: int, names: list[str], positions: list[float]) -> None:
+        """Note angles (rad) and shifts (m) of the model's joints at an instant, by names that end in the body's id."""
+        pairs = zip((name.removesuffix(self._suffix) for name in names), positions, strict=False)
+        self._positions[stamp_ns] = {name: position for name, position in pairs if name in self._joints}
+        if len(self._positions) > HISTORY:
+            self._positions.popitem(last=False)
 
     def find(self, tree: TransformTree, stamp_ns: int) -> Found | None:
-        """Return the joints at an instant, of frames if there are any, else of the human model.
+        """Return the joints at an instant, of frames if there are any, else of the body's model.
 
         None where neither is known at that instant.
         """
@@ -90,9 +95,9 @@ class Body:
         return tree.placement(frame, self._optical_frame, stamp_ns, exactly=self._suffix)
 
     def _modelled(self, body: Placement, stamp_ns: int) -> Found | None:
-        angles_rad = self._angles_rad.get(stamp_ns)
-        if angles_rad is None:
+        positions = self._positions.get(stamp_ns)
+        if positions is None:
             return None
-        places = {name: body.at(place) for name, place in link_places(angles_rad).items()}
+        places = {name: body.at(place) for name, place in link_places(positions, self._links).items()}
         found = Found(joints_of(places.get, body), by_frames=False)
         return found if found.known else None

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Mapping
 
 from actum.skeletons import JOINTS
-from ros2_bridge.hri_in.placements import Placement
+from ros2_bridge.hri.placements import Placement
 from ros2_bridge.rotations import Point
 
 Places = Callable[[str], Point | None]

@@ -9,7 +9,8 @@ from actum.messages import Skeleton
 from actum.node import SECOND_NS, Counters, Tick
 from actum.states import State
 from ros2_bridge import topics
-from ros2_bridge.hri_in.placements import placement
+from ros2_bridge.hri.placements import placement
+from ros2_bridge.hri_in.description import BadDescriptionError, links_of
 from ros2_bridge.hri_in.skeleton_assembler import SkeletonAssembler
 from ros2_bridge.hri_in.transform_tree import Edge
 from ros2_bridge.message_types import NotThatTypeError, from_cdr
@@ -55,6 +56,7 @@ class BodyReader:
             topics.OTHERS_TF_STATIC: self._fixed_transforms,
             topics.OTHERS_JOINT_STATES: self._joint_states,
             topics.OTHERS_SKELETON_2D: self._points,
+            topics.OTHERS_URDF: self._description,
         }
         self._by_name = {topic.name: topic for topic in self._readers}
 
@@ -144,13 +146,21 @@ class BodyReader:
         body = self._assembler.bodies.get(body_id)
         if body is not None and stamp_ns is not None:
             self._heard = True
-            body.take_angles(stamp_ns, message.name, [float(angle) for angle in message.position])
+            body.take_positions(stamp_ns, message.name, [float(each) for each in message.position])
             yield from self._assembler.advance(stamp_ns, [body_id])
 
     def _points(self, _message: Any, foreign: Foreign) -> Iterable[Skeleton]:
         body = self._assembler.bodies.get(_body_id(foreign))
         if body is not None:
             body.has_2d = True
+        return []
+
+    def _description(self, message: Any, foreign: Foreign) -> Iterable[Skeleton]:
+        body_id = _body_id(foreign)
+        try:
+            self._assembler.describe(body_id, links_of(message.data, body_id))
+        except BadDescriptionError as error:
+            self._counters.reject("bad_body_description", f"the URDF of the body {body_id} is not used: {error}")
         return []
 
     def _stamp_ns(self, header: Any) -> int | None:

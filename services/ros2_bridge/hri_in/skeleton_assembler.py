@@ -6,7 +6,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from actum.messages import MOST_AGENTS, Agent, Joint, Skeleton
 from actum.node import SECOND_NS, Counters
 from actum.stamps import Order, StampGuard
+from ros2_bridge.hri.human_model import Link
 from ros2_bridge.hri_in.body import Body, Found
+from ros2_bridge.hri_in.description import USUAL_LINKS
 from ros2_bridge.hri_in.transform_tree import TransformTree
 from ros2_bridge.rotations import rotated
 
@@ -35,6 +37,7 @@ class SkeletonAssembler:
         self.session = ""
         self._sensor, self._optical_frame, self._counters = sensor, optical_frame, counters
         self._numbers: OrderedDict[str, int] = OrderedDict()
+        self._models: OrderedDict[str, Sequence[Link]] = OrderedDict()
         self._highest_number = self._runs = 0
         self._order = StampGuard(RESTARTED_NS)
         self._open: dict[int, dict[str, Found]] = {}
@@ -50,6 +53,15 @@ class SkeletonAssembler:
         self.bodies = {each: self.bodies.get(each) or self._body(each) for each in ids[:MOST_AGENTS]}
         if stamp_ns is not None:
             yield from self.advance(stamp_ns, ids)
+
+    def describe(self, body_id: str, links: Sequence[Link]) -> None:
+        """Take the links of the model of a body, also of one that is not tracked yet."""
+        self._models[body_id] = links
+        self._models.move_to_end(body_id)
+        if len(self._models) > MOST_AGENTS:
+            self._models.popitem(last=False)
+        if body_id in self.bodies:
+            self.bodies[body_id].describe(links)
 
     def owner(self, frame: str) -> str | None:
         """Return the id of the tracked body to which a frame belongs by its name; None where it is no body's.
@@ -143,7 +155,8 @@ class SkeletonAssembler:
         self._numbers.move_to_end(body_id)
         if len(self._numbers) > MOST_NUMBERED:
             self._numbers.popitem(last=False)
-        return Body(body_id, self._numbers[body_id], self._optical_frame)
+        links = self._models.get(body_id, USUAL_LINKS)
+        return Body(body_id, self._numbers[body_id], self._optical_frame, links)
 
     def _begin_anew(self) -> None:
         """Forget what was known at times that are not those of now: a recording is played again, or a clock was set."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from actum.node import SECOND_NS
-from ros2_bridge.hri_in.placements import Placement
+from ros2_bridge.hri.placements import Placement
 
 MOST_FRAMES = 4096
 """Most frames that move, and most that do not: a robot has hundreds, each body some thirty. The frame that was silent

@@ -7,7 +7,8 @@ from actum.arrays import Array
 from actum.skeletons import INDEX
 from ros2_bridge.frames import optical_from_body
 from ros2_bridge.hri_out.limbs import SIDES, Limb, arm, head, leg
-from ros2_bridge.rotations import Y_AXIS, Quaternion, Vector, about, inverse, product, rotated
+from ros2_bridge.hri_out.personal_model import shifts_m
+from ros2_bridge.rotations import NOT_TURNED, Y_AXIS, Quaternion, Vector, about, inverse, product, rotated
 
 LINKS = {
     "torso": "neck",
@@ -29,8 +30,6 @@ _JOINT_OF_LINK = [INDEX[joint] for joint in LINKS.values()]
 """The index of each link's joint, in the order of `LINKS`."""
 SHORTEST_M = 0.02
 """A bone shorter than this (m) has no direction: it is an error of the source."""
-AS_THE_BODY: Quaternion = (0.0, 0.0, 0.0, 1.0)
-"""The orientation of a link that turns with the body, or of which only the place is known."""
 
 
 @dataclass(frozen=True)
@@ -40,11 +39,13 @@ class Body:
     Attributes:
         optical_from_body: (4, 4), the frame between the hips: x forward, y left, z up along the trunk.
         angles: the angle (rad) of each observed joint, by the model's names without id.
+        shifts_m: of each joint by which the person's own model differs from human_description, by its name without id.
         links: place (m) and orientation of each known link in the body's frame, by the model's names without id.
     """
 
     optical_from_body: Array
     angles: dict[str, float]
+    shifts_m: dict[str, float]
     links: dict[str, tuple[Vector, Quaternion]]
 
 
@@ -58,12 +59,13 @@ def body_of(joints: Array) -> Body | None:
     at = dict(zip(LINKS, ((joints[_JOINT_OF_LINK] - hips) @ placed[:3, :3]).tolist(), strict=True))
     bend_rad = _waist(at["torso"])
     trunk: Quaternion = about(Y_AXIS, bend_rad)
-    upper, legs = _upper_limbs(at, inverse(trunk)), _legs(at)
+    trunk_from_body = inverse(trunk)
+    upper, legs = _upper_limbs(at, trunk_from_body), _legs(at)
     turned = {name: product(trunk, quaternion) for limb in upper for name, quaternion in limb.turned.items()}
     turned |= {name: quaternion for limb in legs for name, quaternion in limb.turned.items()}
-    links = {name: (xyz, turned.get(name, AS_THE_BODY)) for name, xyz in at.items() if not math.isnan(xyz[0])}
+    links = {name: (xyz, turned.get(name, NOT_TURNED)) for name, xyz in at.items() if not math.isnan(xyz[0])}
     angles = {"waist": bend_rad} | {name: angle for limb in (*upper, *legs) for name, angle in limb.angles.items()}
-    return Body(placed, angles, links)
+    return Body(placed, angles, shifts_m(at, trunk_from_body, turned), links)
 
 
 def _waist(neck: Vector) -> float:

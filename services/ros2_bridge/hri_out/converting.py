@@ -37,9 +37,10 @@ def match(human: Human, confidence: float) -> Any:
 
 
 def joint_states(of: Any, human: Human, body: Body) -> Any:
-    """Return a JointState with the model's joints that are observed, and no others."""
-    names = [f"{joint}_{human.body}" for joint in body.angles]
-    return made(hri.JOINT_STATE, header=of, name=names, position=np.array([*body.angles.values()]))
+    """Return a JointState with the joints of the person's own model that are observed, and no others."""
+    names = [f"{joint}_{human.body}" for joint in (*body.angles, *body.shifts_m)]
+    positions = np.array([*body.angles.values(), *body.shifts_m.values()])
+    return made(hri.JOINT_STATE, header=of, name=names, position=positions)
 
 
 def frames(of: Any, human: Human, body: Body, links: bool, person: bool) -> Iterator[Any]:

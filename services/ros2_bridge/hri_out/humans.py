@@ -16,6 +16,7 @@ from ros2_bridge.hri_out.announcing import Announcing
 from ros2_bridge.hri_out.body import body_of
 from ros2_bridge.hri_out.camera import Camera, UnusableCameraError
 from ros2_bridge.hri_out.mapping import load
+from ros2_bridge.hri_out.personal_model import urdf
 from ros2_bridge.hri_out.posture import posture_of
 from ros2_bridge.hri_out.present import Human, Present
 from ros2_bridge.message_types import STRING, TF_MESSAGE, made
@@ -120,6 +121,7 @@ class Humans:
 
     def _arrive(self, human: Human) -> Iterator[Output]:
         yield from self._topics.announce(human.topics(self._camera is not None, bool(self._mapping.gestures)))
+        yield from self._topics.on(human.body_topic("urdf"), made(STRING, data=urdf(human.body)))
         yield from self._topics.on(human.person_topic("body_id"), made(STRING, data=human.body))
         yield from self._topics.on(human.person_topic("anonymous"), made(hri.BOOL, data=True))
         yield from self._known(human)

@@ -42,6 +42,7 @@ class Human:
         libhri subscribes to `body_id` and `anonymous` as transient local, so only latched ones reach it.
         """
         yield RosTopic(self.body_topic("joint_states"), hri.JOINT_STATE, "bodies")
+        yield RosTopic(self.body_topic("urdf"), STRING, "bodies", depth=1, latched=True)
         yield RosTopic(self.body_topic("posture"), hri.BODY_POSTURE, "bodies")
         if of_image:
             yield from self.topics_of_image()

@@ -7,11 +7,11 @@ that the model draws, from which the model's link lies 5 cm ahead.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from ros2_bridge.hri_in.placements import Placement
-from ros2_bridge.rotations import Point, about
+from ros2_bridge.hri.placements import Placement
+from ros2_bridge.rotations import NOT_TURNED, Point, Quaternion, about, product
 
 HEIGHT_M = 1.65
 """Body height (m) that the model has by default, and with which ROS4HRI's detectors start it."""
@@ -39,9 +39,10 @@ SHANK_M = _UNIT_M * 2
 
 @dataclass(frozen=True)
 class Link:
-    """A link of the model: its parent, where it begins in it (m), and the joint between them with its axis.
+    """A link of a model: its parent, where it begins in it (m), and the joint between them with its axis.
 
-    Names are without the body's id. The joint is None where the link is fixed.
+    Names are without the body's id. The joint is None where the link is fixed. A link turns about the axis by an angle
+    (rad), or slides along it by a length (m). `turned` is its orientation in its parent where its joint is at 0.
     """
 
     name: str
@@ -49,6 +50,15 @@ class Link:
     origin_m: Point
     joint: str | None = None
     axis: Point = (0.0, 0.0, 0.0)
+    slides: bool = False
+    turned: Quaternion = NOT_TURNED
+
+    def lies(self, position: float) -> Placement:
+        """Return where the link lies in its parent with its joint at an angle (rad) or a shift (m)."""
+        if not self.slides:
+            return Placement(self.origin_m, product(self.turned, about(self.axis, position)))
+        x, y, z = (position * each for each in self.axis)
+        return Placement(Placement(self.origin_m, self.turned).at((x, y, z)), self.turned)
 
 
 def _arm(side: str, out: int) -> Iterator[Link]:
@@ -82,28 +92,36 @@ LINKS: tuple[Link, ...] = (
     *_leg("r", -1),
 )
 """The links in an order in which parents come first; the body is their root."""
-JOINTS = frozenset(link.joint for link in LINKS if link.joint is not None)
-"""The names of the model's joints."""
 TWISTS = frozenset(("y_head", "l_r_shoulder", "r_r_shoulder"))
 """Joints that count as 0 where they are unknown. Trackers that do not see where somebody looks measure how the head is
 tilted as if it were ahead; and an arm's twist cannot be seen only while the arm is straight, when it moves no hand."""
 
 
-def link_places(angles_rad: Mapping[str, float]) -> dict[str, Point]:
+def joints_of_model(links: Sequence[Link]) -> frozenset[str]:
+    """Return the names of a model's joints that move."""
+    return frozenset(link.joint for link in links if link.joint is not None)
+
+
+def link_places(positions: Mapping[str, float], links: Sequence[Link] = LINKS) -> dict[str, Point]:
     """Return where links begin (m) in the body's frame, by their name; what no angles determine is left out.
 
     Args:
-        angles_rad: the angle of each joint, by its name without the body's id; NaN where it is unknown.
+        positions: the angle (rad) or the shift (m) of each joint, by its name without the body's id; NaN where it is
+            unknown. Unknown shifts count as 0.
+        links: of the model, parents before their children; the root is the body.
     """
     placed = {"body": Placement()}
     places = {"body": (0.0, 0.0, 0.0)}
-    for link in LINKS:
-        if link.parent not in placed:
+    for link in links:
+        parent = placed.get(link.parent)
+        if parent is None:
             continue
-        places[link.name] = placed[link.parent].at(link.origin_m)
-        angle_rad = 0.0 if link.joint is None else angles_rad.get(link.joint, math.nan)
-        if link.joint in TWISTS and not math.isfinite(angle_rad):
-            angle_rad = 0.0
-        if math.isfinite(angle_rad):
-            placed[link.name] = placed[link.parent].of(Placement(link.origin_m, about(link.axis, angle_rad)))
+        position = 0.0 if link.joint is None else positions.get(link.joint, math.nan)
+        if not math.isfinite(position) and (link.slides or link.joint in TWISTS):
+            position = 0.0
+        if math.isfinite(position):
+            placed[link.name] = parent.of(link.lies(position))
+            places[link.name] = placed[link.name].position_m
+        else:
+            places[link.name] = parent.at(link.origin_m)
     return places
