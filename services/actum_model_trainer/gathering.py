@@ -12,11 +12,10 @@ from actum_model_trainer.augmentation import Variant, augmentation_for, variants
 from actum_model_trainer.background import negatives_of
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.convolution_training import Convolved
-from actum_model_trainer.pooling import MAX_VECTORS, PooledVectors, Pooling, chosen_of
+from actum_model_trainer.pooling import MAX_VECTORS, Pooling, chosen_of
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, digest_of_streams
 from actum_model_trainer.samples import LabelledStream, SegmentSample
-from actum_model_trainer.side_by_side import both
 from actum_model_trainer.training_data import SampleMeasures, TrainingData, duration_s
 from som_classifier.convolutions import Floats32, resampled
 from som_classifier.first_layer import FirstMaps
@@ -77,23 +76,14 @@ def gathered(
     seed: int,
     progress: Progress,
 ) -> TrainingData:
-    """Pool, convolve and measure the samples and the background, of many samples as coordinates.
-
-    Convolving and measuring are many short calls of Python, which leave the processors to the pooling.
-    """
+    """Pool, convolve and measure the samples and the background, of many samples as coordinates."""
     pooling = Pooling(first, Pyramid(preset.levels, preset.overlap), taught.mirrors)
     if len(taught.samples) > MAX_VECTORS:
         pooling.basis = _basis_of_some(pooling, taught, preset)
     strange = _background(background, taught.samples, preset, taught.mirrors, seed)
-
-    def pooled() -> tuple[list[PooledVectors], Floats32]:
-        vectors = pooling.vectors(taught.samples, taught.augmented, preset.stages, progress=progress)
-        return vectors, pooling.of_background(*strange)
-
-    def measured() -> tuple[Convolved, SampleMeasures]:
-        return _convolved(taught, strange, preset, seed), SampleMeasures.of(taught.samples, first, taught.measured)
-
-    (stages, beside), (convolved, measures) = both(pooled, measured)
+    stages = pooling.vectors(taught.samples, taught.augmented, preset.stages, progress=progress)
+    beside, convolved = pooling.of_background(*strange), _convolved(taught, strange, preset, seed)
+    measures = SampleMeasures.of(taught.samples, first, taught.measured)
     basis, digest = None, digest_of_streams(background)
     if pooling.basis is not None:
         basis = Basis.of(convolved.taught, MANY_DIRECTIONS)

@@ -17,7 +17,7 @@ from actum_model_trainer.pooling import PooledVectors
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import provenance
 from actum_model_trainer.samples import LabelledStream
-from actum_model_trainer.side_by_side import both, side_by_side
+from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.training_data import TrainingData
 from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from actum_model_trainer.verifier_training import trained_verifier
@@ -47,10 +47,7 @@ def train_above(
     """
     data = gathered(first, taught, background, preset, seed, progress)
     origin = provenance(taught.samples, preset, seed) | {"mirrors": taught.mirrors}
-    model, kept = both(
-        lambda: fitted_model(first, data, origin, preset, taught.rng, progress), lambda: kept_arrays(data)
-    )
-    return replace(model, kept=kept)
+    return replace(fitted_model(first, data, origin, preset, taught.rng, progress), kept=kept_arrays(data))
 
 
 def fitted_model(

@@ -7,15 +7,13 @@ import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from contextvars import ContextVar, copy_context
+from contextvars import ContextVar
 from typing import TypeVar
 
 from actum_model_trainer.progress import Progress, silent
 
-First = TypeVar("First")
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-Second = TypeVar("Second")
 
 _JOBS: ContextVar[int | None] = ContextVar("jobs", default=None)
 """How many parts may run at the same time; None for as many as there are processors to use."""
@@ -51,15 +49,6 @@ def side_by_side(
             results.append(result)
             progress(stage, done, len(items))
     return results
-
-
-def both(first: Callable[[], First], second: Callable[[], Second]) -> tuple[First, Second]:
-    """Return the results of two parts, each of which may run parts of its own side by side: they share processors."""
-    if _JOBS.get() == 1:
-        return first(), second()
-    with ThreadPoolExecutor(1) as pool:
-        started = pool.submit(copy_context().run, second)
-        return first(), started.result()
 
 
 def _processors() -> int | None:
