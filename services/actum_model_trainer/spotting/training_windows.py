@@ -66,11 +66,11 @@ def training_windows(
         durations_s: of the live search's windows.
         rng: draws.
     """
-    spans_ns = np.array([*_spans(stream, durations_s * SECOND_NS, rng)], np.float64).reshape(-1, 2)
+    spans_ns: Array = np.array([*_spans(stream, durations_s * SECOND_NS, rng)], np.float64).reshape(-1, 2)
     frames = _frames_within(stream.stamps_ns, spans_ns)
-    frames, spans_ns = (each[np.diff(frames)[:, 0] + 1 >= FEWEST_FRAMES] for each in (frames, spans_ns))
-    covered_ns = np.diff(stream.stamps_ns[frames])
-    windows = frames[(covered_ns >= COVERED_SHARE * np.diff(spans_ns))[:, 0]]
+    enough = np.diff(frames)[:, 0] + 1 >= FEWEST_FRAMES
+    covered_ns = np.diff(stream.stamps_ns[frames[enough]])
+    windows = frames[enough][(covered_ns >= COVERED_SHARE * np.diff(spans_ns[enough]))[:, 0]]
     return TrainingWindows(windows, true_completeness(stream, windows, labels))
 
 
