@@ -101,7 +101,8 @@ class _Measured:
         augmented = [list(variants(sample, augmentation, mirrors, rng)) for sample in samples]
         pooling = Pooling(model.first, model.pyramid, mirrors)
         stages = pooling.vectors(samples, augmented, preset.stages, beside=len(before.labels))
-        features = [convolutions.features(each) for each in series_of(samples, augmented, stages[-1])]
+        everything = len(before.labels) + len(samples)
+        features = [convolutions.features(each) for each in series_of(samples, augmented, preset, everything)]
         measures = SampleMeasures.of(samples, model.first, [of_sample[0].postures for of_sample in augmented])
         return cls(measures, stages, np.stack(features))
 
@@ -120,7 +121,6 @@ def _joined(before: TrainingData, new: _Measured) -> TrainingData:
             PooledVectors(
                 np.concatenate([_padded(one.vectors, pooled), pooled.coordinates(other.vectors)]),
                 np.concatenate([one.sample_indices, first + other.sample_indices]),
-                np.concatenate([one.variant_indices, other.variant_indices]),
             )
             for one, other in zip(before.stages, new.stages, strict=True)
         ],

@@ -12,7 +12,7 @@ from actum_model_trainer.augmentation import Variant, augmentation_for, variants
 from actum_model_trainer.background import negatives_of
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.convolution_training import Convolved
-from actum_model_trainer.pooling import MAX_VECTORS, PooledVectors, Pooling
+from actum_model_trainer.pooling import MAX_VECTORS, Pooling, chosen_of
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import actions_of, digest_of_streams
 from actum_model_trainer.samples import LabelledStream, SegmentSample
@@ -80,14 +80,15 @@ def gathered(
     pooling = Pooling(first, Pyramid(preset.levels, preset.overlap), taught.mirrors)
     if len(taught.samples) > MAX_VECTORS:
         pooling.basis = _basis_of_some(pooling, taught, preset)
-    pooled = pooling.vectors(taught.samples, taught.augmented, preset.stages, progress=progress)
     strange = _background(background, taught.samples, preset, taught.mirrors, seed)
-    convolved, basis = _convolved(taught, pooled[-1], strange, preset, seed), None
+    stages = pooling.vectors(taught.samples, taught.augmented, preset.stages, progress=progress)
+    beside, convolved = pooling.of_background(*strange), _convolved(taught, strange, preset, seed)
+    measures = SampleMeasures.of(taught.samples, first, taught.measured)
+    basis, digest = None, digest_of_streams(background)
     if pooling.basis is not None:
         basis = Basis.of(convolved.taught, MANY_DIRECTIONS)
         convolved = convolved.in_basis(basis)
-    measures, digest = SampleMeasures.of(taught.samples, first, taught.measured), digest_of_streams(background)
-    return TrainingData(measures, pooled, pooling.of_background(*strange), digest, convolved, pooling.basis, basis)
+    return TrainingData(measures, stages, beside, digest, convolved, pooling.basis, basis)
 
 
 def _basis_of_some(pooling: Pooling, taught: Taught, preset: PyramidPreset) -> Basis:
@@ -116,16 +117,23 @@ def _background(
     return [window for window, _ in shown], [[variant] for _, variant in shown]
 
 
-def _convolved(taught: Taught, pooled: PooledVectors, strange: Strange, preset: PyramidPreset, seed: int) -> Convolved:
+def _convolved(taught: Taught, strange: Strange, preset: PyramidPreset, seed: int) -> Convolved:
     """Convolve the same variants that are pooled, and the background."""
     beside = [resampled(window.stamps_ns, variant.postures) for window, (variant,) in zip(*strange, strict=True)]
-    shown = series_of(taught.samples, taught.augmented, pooled)
+    shown = series_of(taught.samples, taught.augmented, preset, len(taught.samples))
     return Convolved.of(shown, beside, preset.convolutions.biases, np.random.default_rng(seed))
 
 
 def series_of(
-    samples: Sequence[SegmentSample], augmented: Sequence[Sequence[Variant]], pooled: PooledVectors
+    samples: Sequence[SegmentSample], augmented: Sequence[Sequence[Variant]], preset: PyramidPreset, everything: int
 ) -> list[Floats32]:
-    """Return the variants that were pooled, resampled for the convolutions, by vector."""
-    rows = zip(pooled.sample_indices.tolist(), pooled.variant_indices.tolist(), strict=True)
-    return [resampled(samples[sample].stamps_ns, augmented[sample][variant].postures) for sample, variant in rows]
+    """Return the variants that are pooled as complete actions, resampled for the convolutions, in the same order.
+
+    `everything` is how many samples there are, with those that were pooled before.
+    """
+    chosen = chosen_of(augmented, preset.stages[-1], everything)
+    return [
+        resampled(sample.stamps_ns, of_sample[variant].postures)
+        for sample, of_sample, rows in zip(samples, augmented, chosen, strict=True)
+        for _, variant in rows
+    ]

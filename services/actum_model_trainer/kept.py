@@ -160,7 +160,7 @@ def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
     count, last = len(data.measures.labels), len(data.stages[-1].vectors)
     for name, array in vars(data.measures).items():
         _expect(name, array, (count, *array.shape[1:]))
-    for number, (vectors, samples, _) in enumerate(data.stages):
+    for number, (vectors, samples) in enumerate(data.stages):
         _expect(f"stage_{number}", vectors, (len(samples), pooled.rank))
         if np.setdiff1d(samples, np.arange(count)).size:
             raise ValueError(
@@ -193,7 +193,7 @@ def _restored(kept: Mapping[str, NDArray[Any]], model: PyramidModel) -> Training
     for number in range(len(model.metadata.fractions)):
         samples = kept[f"stage_{number}_samples"].astype(np.intp)
         vectors = kept[f"stage_{number}"].astype(np.float32)
-        stages.append(PooledVectors(vectors, samples, np.zeros_like(samples)))
+        stages.append(PooledVectors(vectors, samples))
     convolved = [kept[f"convolved_{name}"].astype(np.float32) for name in ("spread", "taught", "background")]
     return TrainingData(
         SampleMeasures(**{each.name: kept[each.name] for each in fields(SampleMeasures)}),

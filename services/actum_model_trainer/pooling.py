@@ -24,12 +24,10 @@ class PooledVectors(NamedTuple):
     Attributes:
         vectors: (n, inputs).
         sample_indices: (n,), the sample of each.
-        variant_indices: (n,), which of its variants.
     """
 
     vectors: NDArray[np.float32]
     sample_indices: Indices
-    variant_indices: Indices
 
 
 MAX_VECTORS = 2_000  # per stage, beyond one of each sample: more make the discriminants hardly better
@@ -68,7 +66,7 @@ class Pooling:
             beside: how many samples were pooled before, which count in the thinning out.
             progress: of the pooling.
         """
-        chosen = [_chosen(variants, fractions, beside + len(samples)) for fractions in stages]
+        chosen = [chosen_of(variants, fractions, beside + len(samples)) for fractions in stages]
         ends = [np.cumsum([0, *map(len, of_stage)]) for of_stage in chosen]
         pooled = [self._room(of_stage[-1]) for of_stage in ends]
 
@@ -86,7 +84,7 @@ class Pooling:
         every = range(len(samples))
         side_by_side(pool, [every[start : start + PART] for start in every[::PART]], "pooling of examples", progress)
         return [
-            PooledVectors(out, *np.array([(n, v) for n, each in enumerate(of_stage) for _, v in each]).T)
+            PooledVectors(out, np.repeat(np.array(every), [len(each) for each in of_stage]))
             for out, of_stage in zip(pooled, chosen, strict=True)
         ]
 
@@ -113,7 +111,7 @@ class Pooling:
         self._pyramid.pool(sums, np.array([[0, len(sums)]]), out)
 
 
-def _chosen(
+def chosen_of(
     variants: Sequence[Sequence[Variant]], fractions: Sequence[float], samples: int
 ) -> list[list[tuple[float, int]]]:
     """Return the shares and variants of each sample of which one stage has vectors, thinned out evenly."""

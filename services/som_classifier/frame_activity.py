@@ -4,7 +4,6 @@ A sum over a segment is the difference of two prefix sums, so that its cost does
 """
 
 from collections.abc import Sequence
-from itertools import groupby
 from types import ModuleType
 from typing import NamedTuple
 
@@ -142,10 +141,11 @@ class FrameEncoder:
 
 def segment_sums(frames: Sequence[FrameActivity], in_mirror: bool) -> PrefixSums:
     """Return a segment's prefix sums of activity, of the actor as seen or mirrored."""
-    side, totals = int(in_mirror), [frames[0].totals_before[None]]
-    for _, together in groupby(frames, key=lambda frame: id(frame.run)):
-        (run, row, _), *others = together
-        totals.append(run.totals[row + 1 : row + 2 + len(others)])
+    side, totals, first = int(in_mirror), [frames[0].totals_before[None]], 0
+    while first < len(frames):
+        run, row, _ = frames[first]
+        totals.append(run.totals[row + 1 :][: len(frames) - first])  # a run's frames follow one another to its end
+        first += len(totals[-1])
     travelled_um: NDArray[np.int64] = np.concatenate(totals)[:, _PARTS].sum(axis=1)
     return PrefixSums([frames[0].before[side], *[run.sums[row + 1, side] for run, row, _ in frames]], travelled_um)
 

@@ -1,13 +1,14 @@
 """Scores of what was found without marks: events, boundaries, action points, false detections, latency."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
 from typing import Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection, Found, Interval, Stretch, Truth
@@ -27,6 +28,8 @@ POINT_TOLERANCE_NS = 333_000_000
 FALSE_ALARMS_PER_MIN = 1.0
 """The rate of false detections at which recall is given: about what people bear."""
 MINUTE_NS = 60 * SECOND_NS
+Bounds = NDArray[np.int64]
+"""Starts and ends of intervals (ns), (n, 2)."""
 T = TypeVar("T", bound=Interval)
 
 
@@ -140,11 +143,8 @@ def event_scores(found: Found) -> EventScores:
 
 def _event_scores(found: Found, matches: Sequence[Match]) -> EventScores:
     detections, truths = len(found.detections), len(found.truths)
-    minutes, done = background_min(found.seen, found.truths), _of_one_person(found.truths)
-    false = detections - len(matches)
-    in_background = sum(
-        all(overlap_ns(own, truth) <= 0 for truth in done[own.file, own.agent]) for own in found.detections
-    )
+    minutes, false = background_min(found.seen, found.truths), detections - len(matches)
+    in_background = sum(int((common_ns(*each) <= 0).all(axis=1).sum()) for each in bounds_of_people(found))
     return EventScores(
         event=ActionScore(truths, detections, len(matches)),
         f1_at_iou={iou: f1(sum(match.fit >= iou for match in matches), detections, truths) for iou in IOUS},
@@ -153,6 +153,23 @@ def _event_scores(found: Found, matches: Sequence[Match]) -> EventScores:
         false_per_min=false / minutes if minutes else None,
         alarms_per_min=in_background / minutes if minutes else None,
     )
+
+
+def bounds_of_people(found: Found) -> Iterator[tuple[Bounds, Bounds]]:
+    """Yield, for each person in whose time something was found, the bounds of what was found and of what was done."""
+    done = _of_one_person(found.truths)
+    for person, detections in _of_one_person(found.detections).items():
+        yield _bounds(detections), _bounds(done[person])
+
+
+def _bounds(intervals: Iterable[Interval]) -> Bounds:
+    return np.array([(each.start_ns, each.end_ns) for each in intervals], np.int64).reshape(-1, 2)
+
+
+def common_ns(one: Bounds, other: Bounds) -> Bounds:
+    """Return the time that each of n intervals has in common with each of m, (n, m), negative where it is none."""
+    common: Bounds = np.minimum(one[:, None, 1], other[:, 1]) - np.maximum(one[:, None, 0], other[:, 0])
+    return common
 
 
 def scores_of(found: Found) -> ContinuousScores:

@@ -1,6 +1,5 @@
 """The threshold of the search, chosen by what it finds in streams of people left out of the heads' training."""
 
-from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -10,7 +9,7 @@ from numpy.typing import NDArray
 
 from actum.arrays import Mask
 from actum_model_trainer.continuous.detections import Detection, Found
-from actum_model_trainer.continuous.scoring import EventScores, event_scores
+from actum_model_trainer.continuous.scoring import Bounds, EventScores, bounds_of_people, common_ns, event_scores
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.scanning import ScannedStream
 from som_classifier.kinematics import GAP_NS
@@ -83,21 +82,14 @@ def precision(of: Found, prior: Prior) -> float:
 
     What the action is called counts for nothing: how often that is right, the verifier knows.
     """
-    by_person: defaultdict[tuple[str, int], list[tuple[int, int]]] = defaultdict(list)
-    for truth in of.truths:
-        by_person[truth.file, truth.agent].append((truth.start_ns, truth.end_ns))
-    bounds_ns = {person: np.array(own) for person, own in by_person.items()}
-    acting = [each for each in of.detections if (each.file, each.agent) in bounds_ns]
-    done = sum(_holds_one(each, bounds_ns[each.file, each.agent]) for each in acting)
+    done = sum(_holding(*each) for each in bounds_of_people(of))
     return (done + prior.precision_segments * prior.precision) / (len(of.detections) + prior.precision_segments)
 
 
-def _holds_one(detection: Detection, bounds_ns: NDArray[np.int64]) -> bool:
-    """Tell whether a segment found has enough in common with one of the actions (n, 2) of its person."""
-    starts_ns, ends_ns = bounds_ns.T
-    common_ns = np.minimum(ends_ns, detection.end_ns) - np.maximum(starts_ns, detection.start_ns)
-    shorter_ns = np.minimum(ends_ns - starts_ns, detection.end_ns - detection.start_ns)
-    return bool((common_ns >= COMMON_SHARE * shorter_ns).any())
+def _holding(found_ns: Bounds, done_ns: Bounds) -> int:
+    """Count the segments found that have enough in common with one of the actions of their person."""
+    shorter_ns = np.minimum(np.diff(found_ns), np.diff(done_ns).T)
+    return int((common_ns(found_ns, done_ns) >= COMMON_SHARE * shorter_ns).any(axis=1).sum())
 
 
 @dataclass(frozen=True, eq=False)

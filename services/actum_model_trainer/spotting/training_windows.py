@@ -66,13 +66,11 @@ def training_windows(
         durations_s: of the live search's windows.
         rng: draws.
     """
-    frames = []
-    for start_ns, end_ns in _spans(stream, durations_s * SECOND_NS, rng):
-        first, last = _frames_within(stream.stamps_ns, start_ns, end_ns)
-        covered_ns = stream.stamps_ns[last] - stream.stamps_ns[first] if first <= last else 0
-        if last - first + 1 >= FEWEST_FRAMES and covered_ns >= COVERED_SHARE * (end_ns - start_ns):
-            frames.append((first, last))
-    windows = np.array(frames, dtype=np.intp).reshape(-1, 2)
+    spans_ns: Array = np.array([*_spans(stream, durations_s * SECOND_NS, rng)], np.float64).reshape(-1, 2)
+    frames = _frames_within(stream.stamps_ns, spans_ns)
+    enough = np.diff(frames)[:, 0] + 1 >= FEWEST_FRAMES
+    covered_ns = np.diff(stream.stamps_ns[frames[enough]])
+    windows = frames[enough][(covered_ns >= COVERED_SHARE * np.diff(spans_ns[enough]))[:, 0]]
     return TrainingWindows(windows, true_completeness(stream, windows, labels))
 
 
@@ -80,12 +78,10 @@ def with_false_alarms(
     stream: LabelledStream, windows: TrainingWindows, alarms: Sequence[Detection], rng: np.random.Generator
 ) -> TrainingWindows:
     """Add windows about each false alarm in a stream, which hold none of the actions."""
-    frames = []
-    for alarm in alarms:
-        duration_ns = alarm.end_ns - alarm.start_ns
-        for shift_start, shift_end in rng.uniform(-JITTER, JITTER, (FALSE_ALARM, 2)) * duration_ns:
-            frames.append(_frames_within(stream.stamps_ns, alarm.start_ns + shift_start, alarm.end_ns + shift_end))
-    added = np.array([each for each in frames if each[1] - each[0] + 1 >= FEWEST_FRAMES], dtype=np.intp).reshape(-1, 2)
+    bounds_ns = np.array([(alarm.start_ns, alarm.end_ns) for alarm in alarms]).reshape(-1, 1, 2)
+    shifts = rng.uniform(-JITTER, JITTER, (len(alarms), FALSE_ALARM, 2))
+    frames = _frames_within(stream.stamps_ns, (bounds_ns + shifts * np.diff(bounds_ns)).reshape(-1, 2))
+    added = frames[np.diff(frames)[:, 0] + 1 >= FEWEST_FRAMES]
     none = np.zeros((len(added), windows.completeness.shape[1]))
     return TrainingWindows(np.concatenate([windows.frames, added]), np.concatenate([windows.completeness, none]))
 
@@ -169,6 +165,8 @@ def _about(start_ns: int, end_ns: int, durations_ns: Array, rng: np.random.Gener
         yield start_ns + shift, start_ns + shift + length
 
 
-def _frames_within(stamps_ns: Stamps, start_ns: float, end_ns: float) -> tuple[int, int]:
-    """Return the first and the last frame of a span; the last is before the first where it holds none."""
-    return int(np.searchsorted(stamps_ns, start_ns)), int(np.searchsorted(stamps_ns, end_ns, side="right")) - 1
+def _frames_within(stamps_ns: Stamps, spans_ns: Array) -> Indices:
+    """Return first and last frame of spans (n, 2), in the same shape; the last is before the first in an empty one."""
+    firsts = np.searchsorted(stamps_ns, spans_ns[:, 0])
+    afters = np.searchsorted(stamps_ns, spans_ns[:, 1], side="right")
+    return np.stack([firsts, afters - 1], axis=1)
