@@ -31,12 +31,20 @@ class Detection(Interval):
         decided_ns: stamp of the newest posture when the answer came.
         confidence: of the label, 0 to 1.
         point_ns: the action point that it claims, a single instant of the action; None for its middle.
+        familiarity: the probability that a marked segment like this one is a true instance of the label; None where the
+            confidence says that.
     """
 
     decided_ns: int
     label: str
     confidence: float
     point_ns: int | None = None
+    familiarity: float | None = None
+
+    @property
+    def sureness(self) -> float:
+        """By what detections are ranked: a confidence may only say which action it is, if it is any."""
+        return self.confidence if self.familiarity is None else self.familiarity
 
     @property
     def claimed_point_ns(self) -> int:
