@@ -1,7 +1,7 @@
 """What was found in recordings without marks, what was done in them, and when anybody was seen; as JSON."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from statistics import median_high
 from typing import Any
 
@@ -40,6 +40,12 @@ class Detection(Interval):
     confidence: float
     point_ns: int | None = None
     familiarity: float | None = None
+
+    def as_marked(self, precision: float) -> "Detection":
+        """Return it with the familiarity of a marked segment, given the precision of the search that found it."""
+        if self.familiarity is None or not precision:
+            return self
+        return replace(self, familiarity=self.familiarity / precision)
 
     @property
     def sureness(self) -> float:

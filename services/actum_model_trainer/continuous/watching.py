@@ -81,18 +81,12 @@ def found_by(
             found += watched(SomClassifier(model, segmentation=segmentation), recording, sensor, file)
     progress("watching", len(recordings), len(recordings))
     precision = _precision(model, segmentation.options)
-    return replace(found, detections=[_as_marked(each, precision) for each in found.detections])
+    return replace(found, detections=tuple(each.as_marked(precision) for each in found.detections))
 
 
 def _precision(model: Model, options: SpottingOptions) -> float:
     known = model.spotting
-    precision = known.precision_for(options.false_alarms_per_min) if isinstance(known, PyramidSpottingMetadata) else 1.0
-    return precision or 1.0
-
-
-def _as_marked(detection: Detection, precision: float) -> Detection:
-    as_found = detection.familiarity
-    return detection if as_found is None else replace(detection, familiarity=as_found / precision)
+    return known.precision_for(options.false_alarms_per_min) if isinstance(known, PyramidSpottingMetadata) else 1.0
 
 
 def views_of(recording: Recording) -> list[tuple[str, str]]:
