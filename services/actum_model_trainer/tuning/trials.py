@@ -110,8 +110,8 @@ class _Searches:
                 answer = self._model.recognise(usable, complete=True).where_found(found.precision)
                 bounds = closed.start_ns, closed.end_ns, posture.stamp_ns
                 if not (answer.unknown or answer.doubtful):
-                    said = answer.label, answer.confidence, None, answer.familiarity
-                    into.append(Detection(self._file, posture.agent, *bounds, *said).as_marked(found.precision))
+                    told = Detection(self._file, posture.agent, *bounds, answer.label, answer.confidence)
+                    into.append(replace(told, familiarity=answer.familiarity).as_marked(found.precision))
         self._found.clear()
 
 
