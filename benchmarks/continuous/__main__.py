@@ -80,7 +80,8 @@ chooses its own in training."""
     yield """Events: the right label and a frame in common; F1@.5: an overlap (IoU) of at least .5. Each detection
 claims the truth of its label that it overlaps most, and a truth takes the best claim; all others are false. False
 detections are counted a minute of background, wherever they lie; in brackets those that lie in it. Latency is from the
-true end to the decision. Split: truths in several detections; merged: detections that hold several truths. The last
+true end to the decision. Recall at one false detection a minute: the best of all thresholds on familiarity, the peers'
+on their confidence. Split: truths in several detections; merged: detections that hold several truths. The last
 rows say what ours is required to show and what is aimed at; besides, it is to be above both peers, and at best within
 three points of the bound."""
 

@@ -97,7 +97,7 @@ def answered(hysteresis: Hysteresis, model: Model, stream: Stream) -> list[Detec
         if last - first + 1 >= model.min_frames:
             answer = model.recognise(frames[first : last + 1], complete=True)
             if not answer.unknown:
-                detections.append(stream.detection(first, last, decided, answer.label, answer.confidence))
+                detections.append(stream.answered(first, last, decided, answer))
     return detections
 
 

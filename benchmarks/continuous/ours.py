@@ -46,5 +46,5 @@ def told(model: Model, stream: Stream) -> list[Detection]:
     for first, last in map(stream.frames_of, stream.truths):
         if last - first + 1 >= model.min_frames:
             answer = model.recognise(frames[first : last + 1], complete=True)
-            detections.append(stream.detection(first, last, last, answer.label, answer.confidence))
+            detections.append(stream.answered(first, last, last, answer))
     return detections

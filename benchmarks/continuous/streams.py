@@ -1,7 +1,7 @@
 """The public sets as continuous streams, each with its frames as our classifier gets them and as its peers do."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from actum_model_trainer.recorded_segments import FrameCollector
 from actum_model_trainer.sample_reading import sample_of, samples_from
 from actum_model_trainer.samples import Samples, SegmentSample
 from scene_simulator.everyday import ALL, FAMILIAR, Everyday
+from som_classifier.model import Recognition
 
 from .simulated import TAUGHT, TAUGHT_REPETITIONS, TESTED, TESTED_REPETITIONS, recording_of
 
@@ -65,6 +66,11 @@ class Stream:
         """Return the detection of an action between two of its frames, decided at a third."""
         start_ns, end_ns, decided_ns = (int(self.stamps_ns[i]) for i in (first, last, decided))
         return Detection(str(self.recording.path), self.agent, start_ns, end_ns, decided_ns, label, confidence)
+
+    def answered(self, first: int, last: int, decided: int, answer: Recognition) -> Detection:
+        """Return the detection of what our classifier answers to these frames."""
+        found = self.detection(first, last, decided, answer.label, answer.confidence)
+        return replace(found, familiarity=answer.familiarity)
 
     def frames_of(self, truth: Truth) -> tuple[int, int]:
         """Return the first and the last of its frames within a truth; the last is before the first where none is."""

@@ -49,10 +49,11 @@ times = st.tuples(st.integers(0, 100), st.integers(1, 20)).map(lambda time: (tim
 people = st.sampled_from([1, 2])
 detections = st.lists(
     st.builds(
-        lambda label, time, agent, after, confidence: Detection(
-            "a.mcap", agent, time[0] * S, time[1] * S, (time[1] + after) * S, label, confidence
+        lambda label, time, agent, after, confidence, familiarity: Detection(
+            "a.mcap", agent, time[0] * S, time[1] * S, (time[1] + after) * S, label, confidence, familiarity=familiarity
         ),
         st.sampled_from(LABELS), times, people, st.integers(0, 3), st.sampled_from([0.2, 0.5, 0.9]),
+        st.sampled_from([None, 0.3, 0.5, 0.8]),
     ),
     max_size=8,
 )  # fmt: skip
@@ -209,7 +210,7 @@ def test_a_truth_in_pieces_and_truths_in_one_are_counted() -> None:
 def test_recall_at_a_false_alarm_a_minute_is_the_best_of_all_thresholds(
     given_: list[Detection], truths_: list[Truth]
 ) -> None:
-    kept = [[d for d in given_ if d.confidence >= least] for least in (0.2, 0.5, 0.9)]
+    kept = [[d for d in given_ if d.sureness >= least] for least in {d.sureness for d in given_}]
     at_thresholds = [scored(each, truths_, minutes=4) for each in kept]
     allowed = [each.event.recall for each in at_thresholds if (each.false_per_min or 0.0) <= 1.0]
     assert scored(given_, truths_, minutes=4).recall_at_rate == max(allowed, default=0.0)

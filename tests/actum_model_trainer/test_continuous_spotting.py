@@ -1,6 +1,8 @@
 """Whole recordings are watched by the classifier's own node, whose model finds actions."""
 
 from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -13,6 +15,7 @@ from performers import performance
 from recognisers import tiny_model
 from som_classifier.spotting.spotted import SpottedSegment
 from spotters import LAG_NS, finding
+from unmarked import recorded, scene, spotting_model
 
 Record = Callable[..., Recording]
 LIFTS = [SpottedSegment(25 * k * FRAME_NS, (25 * k + 19) * FRAME_NS, "lift") for k in range(3)]
@@ -40,3 +43,20 @@ def test_marks_that_a_classifier_put_while_recording_are_not_told_again(record: 
     skeletons, marks = performance(["lift"] * 3)
     own = [mark.model_copy(update={"origin": AUTO, "label": None}) for mark in marks]
     assert found_by(finding(tiny_model(), *LIFTS), [record("own", *skeletons, *own)]).truths == ()
+
+
+def test_the_precision_of_a_search_does_not_rank_what_it_finds(tmp_path: Path) -> None:
+    acted, model = scene(), spotting_model()
+    recording = recorded(tmp_path, "scene", [*acted.skeletons(), *acted.marks()])
+    searches = [
+        model.metadata.spotting.model_copy(update={"precisions": [precision] * len(model.metadata.spotting.precisions)})
+        for precision in (1.0, 0.5)
+        if model.metadata.spotting is not None
+    ]
+    sure, unsure = (
+        found_by(replace(model, metadata=model.metadata.model_copy(update={"spotting": each})), [recording]).detections
+        for each in searches
+    )
+    assert len(sure) > 1
+    assert [each.sureness for each in unsure] == pytest.approx([each.sureness for each in sure])
+    assert all(each.sureness == each.familiarity for each in sure)

@@ -51,6 +51,7 @@ class Finder:
             stamp_ns=end_ns, sensor="kinect0", valid=bool(label), reason=None if label else "too few frames",
             agent=self._agent, segment_id=segment_id, start_ns=start_ns, end_ns=end_ns, final=True,
             action=label or None, confidence=0.75, activations={}, part=None, frames=9, missed=0,
+            familiarity=0.5,
         )  # fmt: skip
 
 
@@ -80,7 +81,7 @@ def test_no_mark_reaches_the_classifier(lifts: Recording) -> None:
 def test_what_was_found_is_told_with_when_it_was_decided(lifts: Recording) -> None:
     start_ns, end_ns, decided_ns = frames(1, 18, 24)
     found = watched(Finder((start_ns, end_ns, decided_ns, "lift")), lifts, "kinect0", "a")
-    assert found.detections == [Detection("a", 1, start_ns, end_ns, decided_ns, "lift", 0.75)]
+    assert found.detections == [Detection("a", 1, start_ns, end_ns, decided_ns, "lift", 0.75, familiarity=0.5)]
 
 
 def test_what_was_marked_is_the_truth_with_its_action_point(lifts: Recording) -> None:

@@ -1,7 +1,7 @@
 """What was found in recordings without marks, what was done in them, and when anybody was seen; as JSON."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from statistics import median_high
 from typing import Any
 
@@ -31,12 +31,26 @@ class Detection(Interval):
         decided_ns: stamp of the newest posture when the answer came.
         confidence: of the label, 0 to 1.
         point_ns: the action point that it claims, a single instant of the action; None for its middle.
+        familiarity: the probability that a marked segment like this one is a true instance of the label; None where the
+            confidence says that.
     """
 
     decided_ns: int
     label: str
     confidence: float
     point_ns: int | None = None
+    familiarity: float | None = None
+
+    def as_marked(self, precision: float) -> "Detection":
+        """Return it with the familiarity of a marked segment, given the precision of the search that found it."""
+        if self.familiarity is None or not precision:
+            return self
+        return replace(self, familiarity=self.familiarity / precision)
+
+    @property
+    def sureness(self) -> float:
+        """By what detections are ranked: a confidence may only say which action it is, if it is any."""
+        return self.confidence if self.familiarity is None else self.familiarity
 
     @property
     def claimed_point_ns(self) -> int:

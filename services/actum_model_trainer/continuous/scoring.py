@@ -99,7 +99,7 @@ class ContinuousScores(EventScores):
         fragmentations: truths to which more than one detection belongs, by more than half of its length, whatever its
             label.
         merges: detections that hold more than half of each of several truths, whatever their labels.
-        recall_at_rate: the largest recall at `FALSE_ALARMS_PER_MIN` or fewer, over all thresholds on confidence; None
+        recall_at_rate: the largest recall at `FALSE_ALARMS_PER_MIN` or fewer, over all thresholds on sureness; None
             without background.
         per_action: the scores of each action, by label.
     """
@@ -227,14 +227,14 @@ def _outside_ns(stretch: Stretch, truths: Iterable[Truth]) -> int:
 
 
 def _recall_at(most_false: float, found: Found) -> float:
-    """Return the largest recall of all thresholds on confidence that leave at most so many false detections."""
+    """Return the largest recall of all thresholds on sureness that leave at most so many false detections."""
     claimed = {
         claim.detection: claim.truth for claim in claims(found.detections, found.truths, intersection_over_union)
     }
     answered: set[Truth] = set()
     best = kept = 0
-    surest_first = sorted(found.detections, key=lambda detection: -detection.confidence)
-    for _, equally_sure in groupby(surest_first, key=lambda detection: detection.confidence):
+    surest_first = sorted(found.detections, key=lambda detection: -detection.sureness)
+    for _, equally_sure in groupby(surest_first, key=lambda detection: detection.sureness):
         more = list(equally_sure)
         kept += len(more)
         answered.update(claimed[detection] for detection in more if detection in claimed)

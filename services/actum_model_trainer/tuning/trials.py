@@ -107,10 +107,11 @@ class _Searches:
             closed = stream.cut(OpenSegment("", found.start_ns, posture.agent, end_ns=found.end_ns))
             usable = [frame for frame in closed.frames if frame.valid]
             if closed.reason is None and len(usable) >= self._model.min_frames:
-                answer = self._model.recognise(usable, complete=True)
+                answer = self._model.recognise(usable, complete=True).where_found(found.precision)
                 bounds = closed.start_ns, closed.end_ns, posture.stamp_ns
                 if not (answer.unknown or answer.doubtful):
-                    into.append(Detection(self._file, posture.agent, *bounds, answer.label, answer.confidence))
+                    told = Detection(self._file, posture.agent, *bounds, answer.label, answer.confidence)
+                    into.append(replace(told, familiarity=answer.familiarity).as_marked(found.precision))
         self._found.clear()
 
 

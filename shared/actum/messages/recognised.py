@@ -50,7 +50,8 @@ class Action(Message):
     action: Name | None
     """The likeliest action; null if there is none."""
     confidence: FiniteFloat
-    """The probability that `action` is right, calibrated on people left out of the training, 0 to 1."""
+    """The probability that `action` is right if it is one of the trained actions, calibrated on people left out of the
+    training, 0 to 1."""
     activations: Activations
     """The activity of each trained action's neuron, by the action's name; empty in partial messages without marks."""
     part: Name | None
@@ -199,7 +200,7 @@ class Event(Message):
     action: Name | None
     """The action that was done; null if none was recognised."""
     confidence: FiniteFloat
-    """The probability that `action` is right, 0 to 1."""
+    """The probability that `action` is right if it is one of the trained actions, 0 to 1."""
     activations: Activations
     """The activity of each trained action's neuron, by the action's name."""
     object: ActedObject | None
