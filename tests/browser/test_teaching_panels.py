@@ -265,9 +265,9 @@ def test_a_video_is_sent_whole_and_read_as_a_job(room: Lesson, teach: Any, tmp_p
     else:
         drop(teach, clip.name, 5000)
     wait_until(lambda: bool(room.teacher.jobs), "it is imported")
-    request = room.teacher.jobs[0].request
-    assert Path(request.fields["video"]).read_bytes() == clip.read_bytes()
-    assert (request.fields["label"], request.fields["count"]) == ("wave", 5)
+    arguments = room.teacher.jobs[0].arguments
+    assert arguments.video.read_bytes() == clip.read_bytes()
+    assert (arguments.label, arguments.count) == ("wave", 5)
     room.teacher.jobs[0].news = Progressing("finding the person", 0.4)
     says(teach, "video", "Reading the video: finding the person, 40 %")
     room.end_job(None, "wave 2.mp4 is no video")
