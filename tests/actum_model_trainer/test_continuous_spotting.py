@@ -45,7 +45,7 @@ def test_marks_that_a_classifier_put_while_recording_are_not_told_again(record: 
     assert found_by(finding(tiny_model(), *LIFTS), [record("own", *skeletons, *own)]).truths == ()
 
 
-def test_the_precision_of_a_search_does_not_rank_what_it_finds(tmp_path: Path) -> None:
+def test_what_is_found_is_ranked_by_the_familiarity_that_is_published(tmp_path: Path) -> None:
     acted, model = scene(), spotting_model()
     recording = recorded(tmp_path, "scene", [*acted.skeletons(), *acted.marks()])
     searches = [
@@ -53,10 +53,10 @@ def test_the_precision_of_a_search_does_not_rank_what_it_finds(tmp_path: Path) -
         for precision in (1.0, 0.5)
         if model.metadata.spotting is not None
     ]
-    sure, unsure = (
+    certain, half = (
         found_by(replace(model, metadata=model.metadata.model_copy(update={"spotting": each})), [recording]).detections
         for each in searches
     )
-    assert len(sure) > 1
-    assert [each.sureness for each in unsure] == pytest.approx([each.sureness for each in sure])
-    assert all(each.sureness == each.familiarity for each in sure)
+    assert len(certain) > 1
+    assert [each.sureness for each in half] == pytest.approx([each.sureness / 2 for each in certain])
+    assert all(each.sureness == each.familiarity for each in certain)

@@ -1,7 +1,7 @@
 """What was found in recordings without marks, what was done in them, and when anybody was seen; as JSON."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from statistics import median_high
 from typing import Any
 
@@ -31,8 +31,8 @@ class Detection(Interval):
         decided_ns: stamp of the newest posture when the answer came.
         confidence: of the label, 0 to 1.
         point_ns: the action point that it claims, a single instant of the action; None for its middle.
-        familiarity: the probability that a marked segment like this one is a true instance of the label; None where the
-            confidence says that.
+        familiarity: the probability that this is a true instance of the label, as the classifier publishes it; None
+            where the confidence says that.
     """
 
     decided_ns: int
@@ -41,15 +41,12 @@ class Detection(Interval):
     point_ns: int | None = None
     familiarity: float | None = None
 
-    def as_marked(self, precision: float) -> "Detection":
-        """Return it with the familiarity of a marked segment, given the precision of the search that found it."""
-        if self.familiarity is None or not precision:
-            return self
-        return replace(self, familiarity=self.familiarity / precision)
-
     @property
     def sureness(self) -> float:
-        """By what detections are ranked: a confidence may only say which action it is, if it is any."""
+        """By what detections are ranked: familiarity if there is one, otherwise confidence.
+
+        Our confidence is the probability of the label if an action was done at all, so it ranks no false alarms.
+        """
         return self.confidence if self.familiarity is None else self.familiarity
 
     @property

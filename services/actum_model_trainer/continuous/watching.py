@@ -1,7 +1,6 @@
 """What the live nodes find in whole recordings without their marks, and what the marks say."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from actum import keys
 from actum.messages import AUTO, Action, Message, Posture, Segment, is_action
@@ -15,7 +14,6 @@ from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.segmentation import DEFAULT, Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
-from som_classifier.spotting.spotting_model import PyramidSpottingMetadata
 
 
 class NoSpotterError(ValueError):
@@ -65,9 +63,6 @@ def found_by(
 ) -> Found:
     """Replay whole recordings without their marks through preprocessor and a classifier with these settings.
 
-    Familiarities are those of marked segments: the precision of the search is one number for all that a model finds,
-    so that it would order models where what several of them found is pooled.
-
     Raises:
         NoSpotterError: the model cannot find actions without marks.
         RecordingError: a file is damaged.
@@ -80,13 +75,7 @@ def found_by(
         for sensor, file in views_of(recording):
             found += watched(SomClassifier(model, segmentation=segmentation), recording, sensor, file)
     progress("watching", len(recordings), len(recordings))
-    precision = _precision(model, segmentation.options)
-    return replace(found, detections=tuple(each.as_marked(precision) for each in found.detections))
-
-
-def _precision(model: Model, options: SpottingOptions) -> float:
-    known = model.spotting
-    return known.precision_for(options.false_alarms_per_min) if isinstance(known, PyramidSpottingMetadata) else 1.0
+    return found
 
 
 def views_of(recording: Recording) -> list[tuple[str, str]]:
@@ -108,7 +97,13 @@ def watched(node: Node, recording: Recording, sensor: str, file: str) -> Found:
         raise AssertionError("the watcher puts nothing")
     detections = [
         Detection(
-            *(file, action.agent, action.start_ns, action.end_ns, decided_ns, action.action, action.confidence),
+            file=file,
+            agent=action.agent,
+            start_ns=action.start_ns,
+            end_ns=action.end_ns,
+            decided_ns=decided_ns,
+            label=action.action,
+            confidence=action.confidence,
             familiarity=action.familiarity,
         )
         for action, decided_ns in watcher.answers

@@ -108,10 +108,19 @@ class _Searches:
             usable = [frame for frame in closed.frames if frame.valid]
             if closed.reason is None and len(usable) >= self._model.min_frames:
                 answer = self._model.recognise(usable, complete=True).where_found(found.precision)
-                bounds = closed.start_ns, closed.end_ns, posture.stamp_ns
                 if not (answer.unknown or answer.doubtful):
-                    told = Detection(self._file, posture.agent, *bounds, answer.label, answer.confidence)
-                    into.append(replace(told, familiarity=answer.familiarity).as_marked(found.precision))
+                    into.append(
+                        Detection(
+                            file=self._file,
+                            agent=posture.agent,
+                            start_ns=closed.start_ns,
+                            end_ns=closed.end_ns,
+                            decided_ns=posture.stamp_ns,
+                            label=answer.label,
+                            confidence=answer.confidence,
+                            familiarity=answer.familiarity,
+                        )
+                    )
         self._found.clear()
 
 
