@@ -62,7 +62,9 @@ def add(
         KeptError: nothing that fits the model is kept, of its maps' training or of its search's.
     """
     if not samples:
-        raise TrainingError("the recordings contain no usable examples to add: record examples of a new action")
+        raise TrainingError(
+            "none of the examples in the recordings can be added, because none is usable: record the action again"
+        )
     known, rng = model.metadata, np.random.default_rng(seed)
     as_known = replace(preset, levels=tuple(known.levels), overlap=known.overlap, epochs=min(preset.epochs, EPOCHS))
     before = kept_data(kept, model)

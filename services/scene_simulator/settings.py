@@ -41,16 +41,16 @@ class Settings(ServiceSettings):
     everyday: Choice = Field(
         "none",
         description=(
-            "what the simulated person does. none: only actions. familiar: actions, and some kinds of background "
-            "activities, such as scratching, to train a model with. all: actions, and all kinds of background "
-            "activities, to test a model with. only: all kinds of background activities, but no actions"
+            "which everyday activities, such as scratching, the simulated person does between the actions. none: no "
+            "everyday activities. familiar: some kinds, to train a model with. all: all kinds, to test a model with. "
+            "only: all kinds, and no actions at all"
         ),
     )
     minutes: float = Field(
         1.0,
         ge=0,
         description=(
-            "minimum length of the scene (min). If the actions end earlier, the background activities of --everyday "
+            "minimum length of the scene (min). If the actions end earlier, the activities of --everyday "
             "fill the remaining time. Ignored if --everyday is none"
         ),
     )

@@ -140,7 +140,7 @@ def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
     with archive.open(member) as array:
         read_header = HEADERS.get(NPY.read_magic(array))
         if read_header is None:
-            raise ValueError(f"the entry {member.filename} in the file is not a NumPy array")
+            raise ValueError(f"its entry {member.filename} is not a NumPy array")
         shape, _, dtype = read_header(array)
     return int(math.prod(shape) * dtype.itemsize)
 

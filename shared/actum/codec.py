@@ -136,8 +136,8 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
     if match["schema"] != expected.SCHEMA:
         raise DecodeError(
             "wrong_schema",
-            f"the encoding of the message names the schema {match['schema']}; messages on this key have the schema "
-            f"{expected.SCHEMA}",
+            f"the message's encoding says schema {match['schema']}, but this key requires {expected.SCHEMA}: publish "
+            f"messages of schema {expected.SCHEMA} on this key",
         )
     if int(match["version"]) > expected.VERSION:
         raise DecodeError(

@@ -147,8 +147,8 @@ class ServiceSettings(BaseSettings):
     credentials: Path | None = Field(
         None,
         description=(
-            "the folder with this program's certificate and key, as written by `actum deploy`, such as people/viewer "
-            "for a program that only reads messages. Requires --connect tls/HOST:PORT. Default: no certificate"
+            "the folder with this program's certificate and key, as written by `actum deploy`. Requires --connect "
+            "tls/HOST:PORT. Default: no certificate"
         ),
     )
     health_file: Path | None = Field(

@@ -178,7 +178,7 @@ def test_what_does_not_fit_the_model_is_refused(kept: Callable[[Any], Any], said
 
 
 def test_recordings_without_examples_are_refused() -> None:
-    with pytest.raises(TrainingError, match="no usable examples to add"):
+    with pytest.raises(TrainingError, match="none is usable: record the action again"):
         add_to(without_swings(), without_swings().kept, [], [])
 
 

@@ -180,12 +180,12 @@ def rotate(
         ),
     ] = None,
 ) -> None:
-    """Renew all certificates and keys, before they expire or after some were lost.
+    """Renew all certificates and keys, before they expire or after some were lost or stolen.
 
-    If credentials were lost or stolen, name their folder with --revoke, so that the routers refuse the old
-    certificates. Afterwards, copy the folder credentials/ of each host to the host again, and the folders in people/ to
-    the users' machines. Services read the new certificates without a restart. With --revoke, also copy router.json5 to
-    each host; then restart each router that runs in a container.
+    Name the folder of lost or stolen ones with --revoke, so that the routers refuse the old certificates. Afterwards,
+    copy the new files: the folder credentials/ of each host to that host, and the folders in people/ to the users'
+    machines. Services read the new certificates without a restart. Only if you used --revoke, also copy router.json5
+    to each host, and restart the routers that run in containers.
     """
     with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment

@@ -42,7 +42,7 @@ class Link:
     """A link of a model: its parent, where it begins in it (m), and the joint between them with its axis.
 
     Names are without the body's id. The joint is None where the link is fixed. A link turns about the axis by an angle
-    (rad), or slides along it by a length (m). `turned` is its orientation in its parent where its joint is at 0.
+    (rad), or, if the joint is prismatic, moves along it by a length (m). `turned` is its orientation in its parent at 0.
     """
 
     name: str
@@ -50,12 +50,12 @@ class Link:
     origin_m: Point
     joint: str | None = None
     axis: Point = (0.0, 0.0, 0.0)
-    slides: bool = False
+    prismatic: bool = False
     turned: Quaternion = NOT_TURNED
 
-    def lies(self, position: float) -> Placement:
-        """Return where the link lies in its parent with its joint at an angle (rad) or a shift (m)."""
-        if not self.slides:
+    def placement_at(self, position: float) -> Placement:
+        """Return the link's placement in its parent for an angle (rad) or a shift (m) of its joint."""
+        if not self.prismatic:
             return Placement(self.origin_m, product(self.turned, about(self.axis, position)))
         x, y, z = (position * each for each in self.axis)
         return Placement(Placement(self.origin_m, self.turned).at((x, y, z)), self.turned)
@@ -117,10 +117,10 @@ def link_places(positions: Mapping[str, float], links: Sequence[Link] = LINKS) -
         if parent is None:
             continue
         position = 0.0 if link.joint is None else positions.get(link.joint, math.nan)
-        if not math.isfinite(position) and (link.slides or link.joint in TWISTS):
+        if not math.isfinite(position) and (link.prismatic or link.joint in TWISTS):
             position = 0.0
         if math.isfinite(position):
-            placed[link.name] = parent.of(link.lies(position))
+            placed[link.name] = parent.of(link.placement_at(position))
             places[link.name] = placed[link.name].position_m
         else:
             places[link.name] = parent.at(link.origin_m)

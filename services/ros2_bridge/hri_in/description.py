@@ -22,8 +22,8 @@ UNIT_TOLERANCE = 1e-3
 SHOULDERS_M = (-0.03, 0.0, -0.035)
 """Where depth cameras have the shoulders, from where human_description has them (m): further behind and below the neck.
 
-With it, models answer as without the way through joint angles 278 instead of 275 of 284 sequences of MSR Action3D's odd
-people, and 199 instead of 198 of 199 of UTKinect's, each person left out in turn.
+With this shift, 278 instead of 275 of 284 sequences of MSR Action3D's odd people get the label that they have without
+the way through joint angles, and 199 instead of 198 of UTKinect's 199; each person was left out in turn.
 """
 
 
@@ -58,8 +58,8 @@ def links_of(urdf: str, body_id: str) -> tuple[Link, ...]:
 def _as_measured(link: Link) -> Link:
     """Return a link where depth cameras measure it.
 
-    The head is the middle of the sphere that human_description draws, from which the link lies ahead. Shoulders that
-    slide, as in a person's own model, are where they were measured.
+    The head is the middle of the sphere that human_description draws; the link lies ahead of it. Shoulders with
+    prismatic joints, as in a person's own model, stay where they were measured.
     """
     x, y, z = link.origin_m
     if link.name == "head":
@@ -98,7 +98,7 @@ def _link(joint: Element, suffix: str) -> Link:
         _numbers(joint, "origin", "xyz", "0 0 0", LONGEST_M),
         joint.get("name", "").removesuffix(suffix) if joint_type in MOVING else None,
         axis,
-        slides=joint_type == "prismatic",
+        prismatic=joint_type == "prismatic",
         turned=_turned(*_numbers(joint, "origin", "rpy", "0 0 0", 2 * math.pi)),
     )
 

@@ -1,7 +1,7 @@
-"""A person's own model: human_description's with bones that slide, so that its links lie where the person's joints do.
+"""A person's own model: human_description's with prismatic joints, so that links lie where the person's joints are.
 
-Angles alone leave out how long the bones are, and how shoulders, trunk and neck move. Robots' nodes know sliding joints
-as well as turning ones: with this URDF, a `robot_state_publisher` places all links as the bridge does.
+Angles alone do not say how long the bones are, or how shoulders, trunk and neck move. With this URDF, a
+`robot_state_publisher` places all links as the bridge does.
 """
 
 import math
@@ -13,7 +13,7 @@ from ros2_bridge.hri.human_model import LINKS, TORSO_M, Link
 from ros2_bridge.rotations import NOT_TURNED, X_AXIS, Y_AXIS, Z_AXIS, Point, Quaternion, Vector, inverse, rotated
 
 AXES: Mapping[str, Point] = {"x": X_AXIS, "y": Y_AXIS, "z": Z_AXIS}
-SLIDING: Mapping[str, tuple[str, str]] = {
+PRISMATIC: Mapping[str, tuple[str, str]] = {
     "torso": ("torso", "yz"),
     "spine": ("spine", "yz"),
     "head": ("head", "z"),
@@ -26,11 +26,11 @@ SLIDING: Mapping[str, tuple[str, str]] = {
         )
     },
 }
-"""The links that slide in their parents, the part of the body of which they are the first, and along which axes."""
+"""The links with prismatic joints: for each, the body part that begins with this link, and the axes of its joints."""
 SPINE = Link("spine", "body", (0.0, 0.0, TORSO_M / 2))
 """The middle of the trunk, which human_description lacks."""
 _FURTHEST_M = 2.0
-"""How far links slide in the URDF (m), which has to give a limit."""
+"""The limit of prismatic joints (m), which a URDF has to give."""
 _BONES = (
     ("head", "torso", "head", 1.0),
     *(
@@ -43,27 +43,27 @@ _BONES = (
 
 
 def _personal(link: Link) -> Iterator[Link]:
-    """Yield a link of human_description as a person's own model has it: first what slides, then what turns."""
+    """Yield a link of human_description as a person's own model has it: first its prismatic joints, then its own joint."""
     if link.name == "r_head":
         link = replace(link, origin_m=(0.0, 0.0, 0.0))
-    part, axes = SLIDING.get(link.name, ("", ""))
+    part, axes = PRISMATIC.get(link.name, ("", ""))
     for axis in axes:
         name = f"{part}_along_{axis}"
-        yield Link(name, link.parent, link.origin_m, name, AXES[axis], slides=True)
+        yield Link(name, link.parent, link.origin_m, name, AXES[axis], prismatic=True)
         link = replace(link, parent=name, origin_m=(0.0, 0.0, 0.0))
     yield link
 
 
 PERSONAL_LINKS: tuple[Link, ...] = tuple(own for link in (*LINKS, SPINE) for own in _personal(link))
 """The links in an order in which parents come first. The torso is a person's neck, where the head begins."""
-_USUAL_M = {SLIDING[link.name][0]: link.origin_m for link in (*LINKS, SPINE) if link.name in SLIDING}
+_USUAL_M = {PRISMATIC[link.name][0]: link.origin_m for link in (*LINKS, SPINE) if link.name in PRISMATIC}
 """Where each part lies in its parent in human_description (m)."""
 _SHIFTS = [
     (f"{part}_along_{axis}", part, "xyz".index(axis), _USUAL_M[part]["xyz".index(axis)])
-    for part, axes in SLIDING.values()
+    for part, axes in PRISMATIC.values()
     for axis in axes
 ]
-"""Of each joint that slides: its name, its part, the index of its axis, and where its part usually lies (m)."""
+"""For each prismatic joint: its name, its part, the index of its axis, and human_description's place of its part (m)."""
 
 
 def shifts_m(
@@ -99,14 +99,14 @@ def urdf(body_id: str) -> str:
     for name in ("body", *(link.name for link in PERSONAL_LINKS)):
         SubElement(robot, "link", name=f"{name}_{body_id}")
     for link in PERSONAL_LINKS:
-        joint_type = "fixed" if link.joint is None else "prismatic" if link.slides else "continuous"
+        joint_type = "fixed" if link.joint is None else "prismatic" if link.prismatic else "continuous"
         joint = SubElement(robot, "joint", name=f"{link.joint or link.name}_{body_id}", type=joint_type)
         SubElement(joint, "parent", link=f"{link.parent}_{body_id}")
         SubElement(joint, "child", link=f"{link.name}_{body_id}")
         SubElement(joint, "origin", xyz=_written(link.origin_m))
         if link.joint is not None:
             SubElement(joint, "axis", xyz=_written(link.axis))
-        if link.slides:
+        if link.prismatic:
             most = str(_FURTHEST_M)
             SubElement(joint, "limit", lower=f"-{most}", upper=most, effort="0", velocity="0")
     return tostring(robot, encoding="unicode")

@@ -57,10 +57,10 @@ _SHORTEST = 1e-3
 
 
 def _nonzero(direction: list[float]) -> list[float]:
-    if not _SHORTEST < math.hypot(*direction) < 1 / _SHORTEST:
+    if not _SHORTEST < (length := math.hypot(*direction)) < 1 / _SHORTEST:
         raise ValueError(
-            f"the direction {direction} is too short or too long: give a direction such as [0, -1, 0], which is up for "
-            "a level camera"
+            f"the vector {direction} has a length of {length:g}, which gives no direction: give a unit vector such as "
+            "[0, -1, 0], which is up for a level camera"
         )
     return direction
 
