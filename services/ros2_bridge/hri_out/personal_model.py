@@ -26,7 +26,7 @@ PRISMATIC: Mapping[str, tuple[str, str]] = {
         )
     },
 }
-"""The links with prismatic joints: for each, the body part that begins with this link, and the axes of its joints."""
+"""The links with prismatic joints: for each, its body part and the axes of these joints."""
 SPINE = Link("spine", "body", (0.0, 0.0, TORSO_M / 2))
 """The middle of the trunk, which human_description lacks."""
 _FURTHEST_M = 2.0
@@ -43,7 +43,7 @@ _BONES = (
 
 
 def _personal(link: Link) -> Iterator[Link]:
-    """Yield a link of human_description as a person's own model has it: first its prismatic joints, then its own joint."""
+    """Yield a link of human_description as a person's own model has it: prismatic joints first, then its own."""
     if link.name == "r_head":
         link = replace(link, origin_m=(0.0, 0.0, 0.0))
     part, axes = PRISMATIC.get(link.name, ("", ""))
@@ -63,7 +63,7 @@ _SHIFTS = [
     for part, axes in PRISMATIC.values()
     for axis in axes
 ]
-"""For each prismatic joint: its name, its part, the index of its axis, and human_description's place of its part (m)."""
+"""For each prismatic joint: its name, its part, its axis' index, and human_description's place of the part (m)."""
 
 
 def shifts_m(
