@@ -42,8 +42,8 @@ class Link:
     """A link of a model: its parent, where it begins in it (m), and the joint between them with its axis.
 
     Names are without the body's id. The joint is None where the link is fixed. A link turns about the axis by an angle
-    (rad), or, if the joint is prismatic, moves along it by a length (m). `turned` is its orientation in its parent where
-    the joint is at 0.
+    (rad), or, if the joint is prismatic, moves along it by a length (m). `turned` is its orientation in its parent
+    while the joint is at 0.
     """
 
     name: str
