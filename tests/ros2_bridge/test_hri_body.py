@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from conftest import NEEDS_ROS2_EXTRA
@@ -44,6 +44,8 @@ def test_an_arms_angles_point_the_models_arm_as_the_bones_point(upper, fore, sid
 
 
 @given(directions, directions, st.sampled_from("lr"))
+@example([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], "l").via("a vertical knee axis: gimbal lock")
+@example([1.0, 0.0, 0.0], [0.0, -1.0, 0.0], "r").via("the same, mirrored")
 def test_a_legs_angles_point_the_models_leg_as_the_bones_point(thigh, shank, side) -> None:
     assume(np.linalg.norm(np.cross(thigh, shank)) > LEAST_BENT)
     limb = leg(side, thigh, shank)

@@ -27,6 +27,8 @@ LEAST_BENT = math.sin(math.radians(10))
 """Sine of the least bend of a knee by which the thigh's twist is told: at less, 2 cm of noise turn it by 15 degrees."""
 LEAST_TWIST = math.sin(math.radians(3))
 """Sine of the least bend of an elbow by which the upper arm's twist is told."""
+GIMBAL_LOCK = 1e-9
+"""Sine of the angle between a knee's axis and the vertical below which the hip's first and last joint turn alike."""
 SHOULDER_YAW_RAD = (-1.1, 1.9)
 """Limits of the model's first shoulder joint (rad): of the two solutions, the one within them is taken."""
 LEAST_SHOULDER_PITCH_RAD = -0.4
@@ -109,6 +111,8 @@ def _hip(thigh: Vector, left: Vector | None) -> tuple[float, float, float]:
         return 0.0, math.atan2(-up[1], up[2]), math.asin(max(-1.0, min(1.0, up[0])))
     forward = _cross(left, up)
     pitch = math.asin(max(-1.0, min(1.0, left[2])))
+    if math.hypot(left[0], left[1]) < GIMBAL_LOCK:
+        return math.atan2(forward[1], forward[0]), pitch, 0.0
     return math.atan2(-left[0], left[1]), pitch, math.atan2(-forward[2], up[2])
 
 
