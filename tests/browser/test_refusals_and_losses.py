@@ -196,6 +196,21 @@ def test_what_a_busy_service_did_not_answer_is_asked_for_again(room: Lesson, ope
     page.get_by_text("The value may not be set: pose_preprocessor").wait_for()
 
 
+def test_a_value_that_is_being_typed_is_not_overwritten_by_one_that_is_read(room: Lesson, open_page: Open) -> None:
+    page = open_page(f"{room.page.address}#parameters")
+    reach, colleague = page.get_by_role("textbox", name="reach limit"), room.page.colleague
+    wait_until(lambda: reach.count() == 1 and reach.input_value() == "10", "they are read")
+    reach.fill("7.5")
+    colleague.answer("pose_preprocessor", "set_parameters", values={"reach_limit_m": 8.0})
+    page.evaluate("() => dispatchEvent(new HashChangeEvent('hashchange'))")
+    reset = page.get_by_role("button", name="Default of reach_limit_m of pose_preprocessor")
+    wait_until(lambda: reset.is_enabled(), "they are read again")
+    assert reach.input_value() == "7.5"
+    reach.press("Enter")
+    page.get_by_text("Set.").wait_for()
+    assert reach.input_value() == "7.5"
+
+
 def test_the_parameters_of_a_service_that_was_started_anew_are_read_anew(room: Lesson, open_page: Open) -> None:
     page = open_page(f"{room.page.address}#parameters")
     reach = page.get_by_role("textbox", name="reach limit")

@@ -7,13 +7,15 @@ const SLIDES = new Set(["number", "integer"]);
 
 export class Parameter {
   constructor(service, told, set) {
-    Object.assign(this, { told, set, line: outcome() });
+    Object.assign(this, { told, set, line: outcome(), edited: false });
     const id = `${service}-${told.name}`;
     const about = element("p", { class: "caption", id: `${id}-about` }, told.description, element("br"), element("span", { class: "range" }, rangeOf(told)));
     this.control = controlOf(told);
     this.control.id = id;
     this.control.setAttribute("aria-describedby", about.id);
+    this.control.addEventListener("input", () => (this.edited = true));
     this.control.addEventListener("change", () => this.change());
+    this.control.addEventListener("blur", () => this.leave());
     const unit = told.unit ? element("span", { class: "unit" }, told.unit) : null;
     this.reset = button("Default", () => this.put(this.told.default), { label: `Default of ${told.name} of ${service}`, kind: "small" });
     const label = element("label", { for: id }, titleOf(told));
@@ -25,21 +27,35 @@ export class Parameter {
     if (!SLIDES.has(type) || minimum === null || maximum === null) return null;
     const step = type === "integer" ? "1" : "any";
     this.slide = element("input", { type: "range", min: String(minimum), max: String(maximum), step, "aria-label": `${name} of ${service}, by a slider` });
-    this.slide.addEventListener("input", () => (this.control.value = String(Number(Number(this.slide.value).toPrecision(3)))));
+    this.slide.addEventListener("input", () => {
+      this.edited = true;
+      this.control.value = String(Number(Number(this.slide.value).toPrecision(3)));
+    });
     this.slide.addEventListener("change", () => this.change());
+    this.slide.addEventListener("blur", () => this.leave());
     return this.slide;
   }
 
+  // Shows a value that was read, but not in place of one that is being typed.
   show(told) {
     this.told = told;
+    this.reset.disabled = asText(told.value) === asText(told.default);
+    if (this.edited) return;
     if (this.control.type === "checkbox") this.control.checked = told.value;
     else this.control.value = asText(told.value);
     if (this.slide) this.slide.value = String(told.value);
-    this.reset.disabled = asText(told.value) === asText(told.default);
     this.control.removeAttribute("aria-invalid");
   }
 
+  // An edit that was undone makes no change: what was read meanwhile is shown.
+  leave() {
+    if (!this.edited) return;
+    this.edited = false;
+    this.show(this.told);
+  }
+
   change() {
+    this.edited = false;
     let value;
     try {
       value = this.control.type === "checkbox" ? this.control.checked : asValue(this.control.value, this.told);
