@@ -204,7 +204,7 @@ def test_a_value_that_is_being_typed_is_not_overwritten_by_one_that_is_read(room
     colleague.answer("pose_preprocessor", "set_parameters", values={"reach_limit_m": 8.0})
     page.evaluate("() => dispatchEvent(new HashChangeEvent('hashchange'))")
     reset = page.get_by_role("button", name="Default of reach_limit_m of pose_preprocessor")
-    wait_until(lambda: reset.is_enabled(), "they are read again")
+    wait_until(reset.is_enabled, "they are read again")
     assert reach.input_value() == "7.5"
     reach.press("Enter")
     page.get_by_text("Set.").wait_for()
