@@ -24,8 +24,8 @@ from actum.arrays import median
 from actum.messages import Action, Event, HeldObject
 
 COPIED = (
-    "stamp_ns", "sensor", "agent", "segment_id", "start_ns", "action", "confidence", "unknown", "missing_joints",
-    "activations", "frames", "session_id",
+    "stamp_ns", "sensor", "agent", "segment_id", "start_ns", "action", "confidence", "familiarity", "unknown",
+    "missing_joints", "activations", "frames", "session_id",
 )  # fmt: skip
 """The fields that an event copies from its action."""
 

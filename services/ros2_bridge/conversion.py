@@ -140,6 +140,8 @@ def action_event(event: Event, frame_id: str) -> Any:
         valid=event.valid,
         agent=event.agent,
         confidence=event.confidence,
+        familiarity_known=event.familiarity is not None,
+        familiarity=event.familiarity or 0.0,
         unknown=event.unknown,
         candidate_ids=[str(each.id) for each in event.candidates],
         held_id=str(event.held.id) if event.held else "",

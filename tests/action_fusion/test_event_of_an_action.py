@@ -47,9 +47,9 @@ def test_distances_are_the_smallest_from_hand_to_object() -> None:
 
 
 def test_what_the_action_says_is_copied() -> None:
-    act = action("push", activations={"push": 0.94, "pull": 0.1}, frames=61, missed=2)
+    act = action("push", activations={"push": 0.94, "pull": 0.1}, familiarity=0.7, frames=61, missed=2)
     event = event_in(acting_on(CUP, CUP), act)
-    kept = "stamp_ns sensor agent segment_id start_ns end_ns action confidence activations frames"
+    kept = "stamp_ns sensor agent segment_id start_ns end_ns action confidence familiarity activations frames"
     assert {name: getattr(event, name) for name in kept.split()} == {name: getattr(act, name) for name in kept.split()}
     assert (event.valid, event.missed, event.held) == (True, 2, None)
 

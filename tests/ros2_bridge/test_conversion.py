@@ -183,12 +183,14 @@ def with_pose(quaternion: list[float] | None) -> Event:
 
 
 def test_an_event_says_who_did_what_to_which_object_and_when() -> None:
-    typed = put(told(hand="left", outcome="lifted"))["event"]
+    typed = put(told(hand="left", outcome="lifted", familiarity=0.75))["event"]
     assert_header(typed.header)
     assert (typed.start.sec, typed.start.nanosec, typed.end.sec, typed.end.nanosec) == (1, 0, 2, 1)
     assert (typed.valid, typed.agent, typed.hand, typed.action, typed.confidence) == (True, 1, "left", "push", 1.0)
     assert (typed.object_id, typed.object_name, typed.outcome) == ("1", "cup", "lifted")
     assert (typed.sentence, typed.segment_id) == ("lift object 3", "lift-1")
+    assert (typed.familiarity_known, typed.familiarity) == (True, 0.75)
+    assert not put(told())["event"].familiarity_known
     assert (typed.position_known, typed.displacement_known) == (False, False)
 
 
@@ -324,6 +326,7 @@ CARRIED = {
     "motion": {"displacement_known", "displacement", "direction"},
     "candidates": {"candidate_ids"},
     "agrees": {"agreement_known", "agrees"},
+    "familiarity": {"familiarity_known", "familiarity"},
     **{
         name: {name}
         for name in (

@@ -225,6 +225,8 @@ class Event(Message):
     """Number of frames that were lost on the way to the classifier and to the fusion."""
     unknown: bool = False
     """Whether the segment may be none of the trained actions."""
+    familiarity: FiniteFloat | None = None
+    """Probability that the segment is a true instance of `action`, as in the action's message."""
     missing_joints: list[Name] = Field([])
     """The names of the joints that were missing in some frame for longer than 0.3 s."""
     candidates: list[ActedObject] = Field([])

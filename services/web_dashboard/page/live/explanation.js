@@ -76,7 +76,7 @@ function facts(segment) {
   return [
     ["Segment", `${seconds((end - start) / 1e9)}, ${marked ? `marked (${origin ?? "a program"})` : "found by the classifier"}`],
     ["Confidence", `${percent(answer.confidence)}${margin(answer.activations)}`],
-    ["Familiarity", action?.familiarity === null || !action ? null : `${percent(action.familiarity)}${action.unknown ? ", too low, so the action is unknown" : ""}`],
+    ["Familiarity", (answer.familiarity ?? null) === null ? null : `${percent(answer.familiarity)}${answer.unknown ? ", too low, so the action is unknown" : ""}`],
     ["Early answers", earlier(early, answer.action, start, end)],
     ["Hand", event?.hand ?? action?.part?.replace("_", " ")],
     ["Object", ofObject(event)],
