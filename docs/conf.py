@@ -52,6 +52,7 @@ RESULTS = {
     "Latency and speed: what was tried": "benchmarks/latency/README",
     "Training: what was tried": "benchmarks/latency/training",
     "Maps": "benchmarks/som",
+    "ROS4HRI: what was tried": "benchmarks/ros4hri/README",
 }
 PROJECT = ["deploy/README", "CONTRIBUTING", "CHANGELOG", "SECURITY"]
 SECTIONS = {
