@@ -67,9 +67,9 @@ class Settings(ServiceSettings):
         None,
         min_length=1,
         description=(
-            "name of the camera's optical frame, if your robot's tf tree already contains this frame; the bridge then "
-            "publishes nothing on /tf_static. Default: the bridge publishes on /tf_static the frame SENSOR_link, such "
-            "as kinect0_link, and its child frame SENSOR_optical_frame"
+            "name of the camera's optical frame, if your robot's tf tree already contains this frame. With this "
+            "option, the bridge publishes nothing on /tf_static. Default: the bridge publishes on /tf_static the frame "
+            "SENSOR_link, such as kinect0_link, and its child frame SENSOR_optical_frame"
         ),
     )
 
