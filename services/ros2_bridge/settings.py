@@ -45,8 +45,8 @@ class Settings(ServiceSettings):
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
         "jazzy",
         description=(
-            "the ROS 2 distribution of your nodes. A wrong distribution can prevent all communication, because humble "
-            "names topics in Zenoh differently from jazzy and kilted"
+            "the ROS 2 distribution of your nodes. A wrong distribution can prevent all communication, because the "
+            "names of topics in Zenoh differ between humble and the other two distributions"
         ),
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(

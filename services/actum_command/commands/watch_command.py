@@ -57,7 +57,7 @@ def watch(
 
     For the topic 'intent' (the objects that a hand reaches for), the command prints a line only when the likeliest
     object changes, when the probability of this object first reaches 0.5 or 0.9, and when the reach ends. With --json,
-    the command prints all messages of this topic, too.
+    the command prints all messages of this topic.
 
     On a terminal, a line at the bottom also shows each person's ongoing action and its completeness. With --from, the
     command prints the messages of recordings instead of live messages. The recordings can include a file that 'actum
