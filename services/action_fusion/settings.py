@@ -92,15 +92,17 @@ class Settings(RememberingSettings):
         0.25,
         gt=0,
         description=(
-            "maximum distance from a hand at which an object is within reach (m). If the hand may hold a tool, the "
-            "maximum is this distance plus --grasp-m"
+            "maximum distance between a hand and an object that the hand can reach (m). For an object that moves "
+            "during the action, the maximum is this distance plus --grasp-m, because a person can move an object with "
+            "a tool"
         ),
     )
     grasp_m: float = Field(
         0.20,
         gt=0,
         description=(
-            "maximum distance between the centre of a hand and the centre of an object that the hand holds (m)"
+            "maximum distance between the centre of a hand and the centre of an object at which the hand counts as "
+            "holding the object (m)"
         ),
     )
     moved_m: float = Field(0.03, gt=0, description="minimum displacement at which an object counts as moved (m)")
@@ -124,40 +126,45 @@ class Settings(RememberingSettings):
         0.02,
         ge=0,
         description=(
-            "if a hand reaches towards several objects whose distances from the hand differ by at most this value (m), "
-            "the event names all of these objects as possible"
+            "if a hand reaches towards several objects, and the distances between the hand and the objects differ by "
+            "at most this value (m), the event lists these objects in the field 'candidates'"
         ),
     )
     pointing_uncertainty_deg: float = Field(
         2.0,
         ge=0,
         description=(
-            "if a person points towards several objects whose angles from the arm differ by at most this value (deg), "
-            "the event names all of these objects as possible"
+            "if a person points towards several objects, and the angles between the arm and the directions to the "
+            "objects differ by at most this value (deg), the event lists these objects in the field 'candidates'"
         ),
     )
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
-            "for each action, the result that is expected for the object, such as lift=lifted,push=pushed; events say "
-            "whether the expected result occurred. In all actions without an expected result, a held object may be a "
-            "tool that is used on another object"
+            "for each action, the result that is expected for the object, such as lift=lifted,push=pushed. Events say "
+            "whether the expected result occurred. In an action that has an expected result, an object in the hand is "
+            "always the object of the action. In any other action, an object in the hand can be a tool; if it is a "
+            "tool, the object of the action is the object on which the tool is used"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(
         None,
         description=(
             "transform from camera coordinates to the coordinates of a room or robot. With this transform, events give "
-            "object poses in both coordinate systems; default: in camera coordinates only. Write the 16 numbers of a 4 "
-            "x 4 matrix row by row (lengths in metres), or name a file that contains these numbers. For several "
-            "sensors, name one file per sensor and replace the sensor's name by {sensor}, such as world-{sensor}.txt"
+            "object poses in both coordinate systems. Write the 16 numbers of a 4 x 4 matrix row by row (lengths in "
+            "metres), or name a file that contains these numbers. For several sensors, store one file per sensor, and "
+            "write {sensor} in place of the sensor's name, such as world-{sensor}.txt. Default: events give object "
+            "poses in camera coordinates only"
         ),
     )
     world_frame: str = Field(
         "world",
         min_length=1,
         max_length=200,
-        description="name that events use for the target coordinate system of --world-from-camera",
+        description=(
+            "name of the coordinate system into which --world-from-camera transforms object poses; events contain this "
+            "name"
+        ),
     )
 
     @model_validator(mode="after")

@@ -13,8 +13,8 @@ class Settings(SharedSettings):
         gt=0,
         le=1000,
         description=(
-            "maximum distance of a joint from the camera along each axis (m); a person is ignored in frames in which a "
-            "joint is farther away"
+            "maximum distance of a joint from the camera along each coordinate axis (m); a person is ignored in frames "
+            "in which a joint is farther away"
         ),
     )
     bone_limit_m: float = Field(

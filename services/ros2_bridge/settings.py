@@ -45,8 +45,8 @@ class Settings(ServiceSettings):
     ros_distro: Literal["humble", "jazzy", "kilted"] = Field(
         "jazzy",
         description=(
-            "the ROS 2 distribution of your nodes. A wrong distribution can prevent all communication, because humble "
-            "names topics in Zenoh differently from jazzy and kilted"
+            "the ROS 2 distribution of your nodes. A wrong distribution can prevent all communication, because the "
+            "names of topics in Zenoh differ between humble and the other two distributions"
         ),
     )
     ros_topics: Annotated[frozenset[TopicName], NoDecode, BeforeValidator(_names)] = Field(
@@ -67,9 +67,9 @@ class Settings(ServiceSettings):
         None,
         min_length=1,
         description=(
-            "name of the camera's optical frame, if your robot's tf tree already contains this frame; the bridge then "
-            "publishes nothing on /tf_static. Default: the bridge publishes on /tf_static the frame SENSOR_link, such "
-            "as kinect0_link, and its child frame SENSOR_optical_frame"
+            "name of the camera's optical frame, if your robot's tf tree already contains this frame. With this "
+            "option, the bridge publishes nothing on /tf_static. Default: the bridge publishes on /tf_static the frame "
+            "SENSOR_link, such as kinect0_link, and its child frame SENSOR_optical_frame"
         ),
     )
 

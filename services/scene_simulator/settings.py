@@ -20,8 +20,8 @@ class Settings(ServiceSettings):
         0,
         ge=0,
         description=(
-            "number that selects the simulated person, 0 or higher. Each number stands for a person with a different "
-            "body height, tempo and preferred hand"
+            "number (0 or higher) that selects the simulated person. The body height, the tempo and the preferred hand "
+            "of the person depend on this number"
         ),
     )
     seed: int = Field(
@@ -41,8 +41,8 @@ class Settings(ServiceSettings):
     everyday: Choice = Field(
         "none",
         description=(
-            "which everyday activities, such as scratching, the simulated person does between the actions. none: no "
-            "everyday activities. familiar: some kinds, to train a model with. all: all kinds, to test a model with. "
+            "which background activities, such as scratching, the simulated person does between the actions. none: no "
+            "background activities. familiar: some kinds, to train a model with. all: all kinds, to test a model with. "
             "only: all kinds, and no actions at all"
         ),
     )
@@ -50,7 +50,7 @@ class Settings(ServiceSettings):
         1.0,
         ge=0,
         description=(
-            "minimum length of the scene (min). If the actions end earlier, the activities of --everyday "
+            "minimum length of the scene (min). If the actions end earlier, background activities (see --everyday) "
             "fill the remaining time. Ignored if --everyday is none"
         ),
     )

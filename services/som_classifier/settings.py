@@ -56,9 +56,9 @@ class Settings(RememberingSettings):
     segments: WantedSegments = Field(
         "both",
         description=(
-            "which actions to recognise. marks: only actions whose start and end another program marks. auto: only "
-            "actions that the classifier finds by itself. both: both kinds; if an action that is found overlaps a "
-            "marked action, only the marked action is published"
+            "which actions to recognise. marks: only actions whose start and end are marked by another program. auto: "
+            "only actions that the classifier finds by itself. both: both kinds; if a found action overlaps a marked "
+            "action, only the marked action is published"
         ),
     )
     false_alarms_per_min: float | None = Field(
@@ -73,32 +73,34 @@ class Settings(RememberingSettings):
     shortest_pause_s: Seconds = Field(
         0.0,
         description=(
-            "shortest pause between two actions of one person (s). If the classifier finds an action that starts "
-            "sooner after the previous action, this action is not published. This option does not affect actions whose "
-            "start and end another program marks"
+            "shortest pause between two actions of one person (s). An action that the classifier finds by itself is "
+            "not published if the pause between the end of the person's previous action and the start of this action "
+            "is shorter. This option does not affect actions whose start and end are marked by another program"
         ),
     )
     cooldown_s: Annotated[dict[str, Seconds], NoDecode, BeforeValidator(_pairs)] = Field(
         {},
         description=(
-            "for each action, the shortest pause between two repetitions by one person (s). With wave=3,clap=1, a wave "
-            "is not published if it starts less than 3 s after the end of the last published wave. This option does "
-            "not affect actions whose start and end another program marks. Default: 0 s for all actions"
+            "for each action, the shortest pause between two repetitions by one person (s). With wave=3,clap=1, for "
+            "example, a wave is not published if it starts less than 3 s after the end of the person's last published "
+            "wave. This option does not affect actions whose start and end are marked by another program. Default: 0 s "
+            "for all actions"
         ),
     )
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "actions, such as wave,clap: of the actions that the classifier finds by itself, publish only these. This "
-            "option does not affect actions whose start and end another program marks. Default: all actions of the "
-            "model are published"
+            "actions, such as wave,clap, that are published if the classifier finds them by itself. Other actions that "
+            "the classifier finds are not published. This option does not affect actions whose start and end are "
+            "marked by another program. Default: all actions of the model are published"
         ),
     )
     disabled_actions: Names = Field(
         frozenset(),
         description=(
             "actions, such as wave,clap, that are not published if the classifier finds them by itself. This option "
-            "does not affect actions whose start and end another program marks. Default: all actions are published"
+            "does not affect actions whose start and end are marked by another program. Default: all actions of the "
+            "model are published"
         ),
     )
 

@@ -60,7 +60,7 @@ class Settings(ServiceSettings):
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(
         frozenset(),
         description=(
-            "further host names under which browsers may open the web page, such as lab.example.org. This machine's "
+            "further host names under which browsers can open the web page, such as lab.example.org. This machine's "
             "own name and addresses are always allowed; requests for any other name are refused. Default: no further "
             "names"
         ),

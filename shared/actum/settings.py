@@ -154,8 +154,8 @@ class ServiceSettings(BaseSettings):
     health_file: Path | None = Field(
         None,
         description=(
-            "a file for the health check of a container: while the service works, the service updates the file's "
-            "modification time every second. Default: no file"
+            "a file for the health check of a container. While the service works, it sets the file's modification time "
+            "to the current time every second. Default: no file"
         ),
     )
 
@@ -210,8 +210,9 @@ class SharedSettings(NodeSettings):
     share: bool = Field(
         False,
         description=(
-            "let several processes of this service share the sensors; start each of the processes with --share. Each "
-            "sensor is served by one process at a time. If that process ends, another process takes over within 2 s"
+            "let several processes of the same service share the sensors. Start each of these processes with --share. "
+            "Only one process at a time serves a sensor; if this process ends, another process takes over the sensor "
+            "within 2 s"
         ),
     )
 
@@ -222,8 +223,9 @@ class RememberingSettings(SharedSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the service stores its latest answers, so that a restarted service publishes the same "
-            "answers again. With --share the folder is not used, because the processes receive each other's answers. "
-            "Default: nothing is stored"
+            "a folder in which the classifier stores its latest actions, and the action fusion stores its latest "
+            "events. After a restart, both services keep the stored results and do not recognise the same segments a "
+            "second time. With --share the folder is not used, because processes that share a sensor receive each "
+            "other's results. Default: nothing is stored"
         ),
     )

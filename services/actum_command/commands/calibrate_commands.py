@@ -106,10 +106,11 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         list[Path] | None,
         typer.Argument(
             help=(
-                "pictures of the calibration board, in pairs that both cameras took at the same time. In each pair, "
-                "NAME_a.png is from the camera that sees the markers, and NAME_b.png is from the camera that sees the "
-                "people. Or name two folders, first the folder of the camera that sees the markers; the two pictures "
-                "of a pair then have the same file name"
+                "pairs of pictures of the calibration board; both cameras took the two pictures of a pair at the same "
+                "time. In each pair, NAME_a.png is from the camera that sees the markers, and NAME_b.png is from the "
+                "camera that sees the people. Alternatively, name two folders in which the two pictures of a pair have "
+                "the same file name: first the folder of the camera that sees the markers, then the folder of the "
+                "other camera"
             )
         ),
     ] = None,
@@ -129,9 +130,9 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Measure the position of a camera that sees the markers, relative to a second camera that sees the people.
 
-    Use this command only if you have two such cameras. First run 'actum calibrate intrinsics' for each camera. Then
-    take 6 to 10 pairs of pictures of the board that 'actum markers --board' prints. The command writes a calibration
-    file for the camera that sees the markers.
+    Use this command only if the markers and the people are seen by different cameras. First run 'actum calibrate
+    intrinsics' for each camera. Then take 6 to 10 pairs of pictures of the board that 'actum markers --board' prints.
+    The command writes a calibration file for the camera that sees the markers.
     """
     if (live is not None) == bool(pairs):
         fail(

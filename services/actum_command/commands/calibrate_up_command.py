@@ -33,8 +33,8 @@ def up(
 ) -> None:
     """Measure the tilt of a camera with the help of a person.
 
-    The person has to stand upright and still in front of the camera for two seconds, with hanging arms. The command
-    prints the environment variable ACTUM_UP_IN_CAMERA with its value; set this variable for the sensor gateway.
+    The person has to stand upright and still in front of the camera for two seconds, with the arms hanging down. The
+    command prints the environment variable ACTUM_UP_IN_CAMERA with its value; set this variable for the sensor gateway.
     """
     frames = _live() if recording is None else _recorded(recording)
     estimator, instruction, instructed_ns = UpDirectionEstimator(), "", -PAUSE_NS

@@ -17,8 +17,8 @@ from actum_deployer.hosts import hosts_of
 app = PlainTyper(
     no_args_is_help=True,
     help=(
-        "Write the files for running actum on several hosts: configurations of routers and containers, systemd units, "
-        "credentials."
+        "Write the files that are needed to run actum on several hosts: configuration files of routers and containers, "
+        "systemd units and credentials."
     ),
 )
 
@@ -50,8 +50,9 @@ def init(  # noqa: PLR0913, PLR0917 - one parameter is one option
             help=(
                 "names and addresses of the hosts, such as camera=192.168.1.5,compute=192.168.1.6. A host whose name "
                 "begins with camera runs a camera and the marker tracker. A host whose name begins with compute runs "
-                "all other services and, for each of its sensors, a web page. Name further hosts camera2, compute2 and "
-                "so on. If the router of a host uses another port than 7447, append :PORT to the host's address"
+                "all other services, and one web page for each sensor. Name further hosts camera2, compute2 and so on. "
+                "If there are several compute hosts, each sensor is assigned to one of them. If the router of a host "
+                "uses another port than 7447, append :PORT to the host's address"
             ),
         ),
     ],
@@ -175,17 +176,17 @@ def rotate(
             metavar="NAME",
             help=(
                 "name of a folder of credentials that were lost or stolen, such as viewer. The routers will refuse the "
-                "old certificate of this folder. May be repeated. Default: no certificate is refused"
+                "old certificate of this folder. The option can be repeated. Default: no certificate is refused"
             ),
         ),
     ] = None,
 ) -> None:
     """Renew all certificates and keys, before they expire or after some were lost or stolen.
 
-    Name the folder of lost or stolen ones with --revoke, so that the routers refuse the old certificates. Afterwards,
-    copy the new files: the folder credentials/ of each host to that host, and the folders in people/ to the users'
-    machines. Services read the new certificates without a restart. Only if you used --revoke, also copy router.json5
-    to each host, and restart the routers that run in containers.
+    If credentials were lost or stolen, name their folder with --revoke, so that the routers refuse the old certificate.
+    Afterwards, copy the new files: the folder credentials/ of each host to that host, and the folders in people/ to the
+    users' machines. Services read the new certificates without a restart. Only if you used --revoke, also copy
+    router.json5 to each host, and restart the routers that run in containers.
     """
     with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment

@@ -25,10 +25,11 @@ SOURCES = {"sensor_gateway": "sensor", "ros2_bridge": "sensor", "marker_camera":
 
 
 def doctor() -> None:
-    """Check router, services, streams, versions, clocks and settings of the running system, and print what is wrong.
+    """Check the running system, and print what is wrong.
 
-    Run this command when events are missing. The exit code is 1 if the command finds a problem. With --sensors
-    left,right, the command checks each sensor in turn.
+    The command checks the router, services, streams, versions, clocks and settings. Run this command when events are
+    missing. The exit code is 1 if the command finds a problem. With --sensors left,right, the command checks each
+    sensor in turn.
     """
     each = settings(NodeSettings).of_each_sensor
     are_well = []

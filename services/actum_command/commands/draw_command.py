@@ -33,11 +33,11 @@ def draw(
     ] = 6,
     people: Annotated[int, typer.Option(min=1, max=4, help="maximum number of people to find in a picture")] = 2,
 ) -> None:
-    """Find the people in a video and draw their joints, to check the camera before use.
+    """Find the people in a video and draw their joints, to check a camera before you use it.
 
-    The command writes one image that contains several pictures of the video. Check that people are found, and that left
-    and right are correct. The camera's settings come from the environment variables ACTUM_POSE_MODEL, ACTUM_CALIBRATION
-    (or ACTUM_FIELD_OF_VIEW_DEG) and ACTUM_MIRRORED.
+    The command writes one image that contains several pictures of the video. In this image, check that people are
+    found, and that left and right are not swapped. The camera's settings come from the environment variables
+    ACTUM_POSE_MODEL, ACTUM_CALIBRATION (or ACTUM_FIELD_OF_VIEW_DEG) and ACTUM_MIRRORED.
     """
     if not cv2.haveImageWriter(str(output)):
         fail(f"the file name {output} does not end in a known picture format: use .png or .jpg")

@@ -51,8 +51,7 @@ CLASSIFIER = "som_classifier"
 ONLY_LEFT_OUT = ". Used only with --leave-one-person-out"
 INTENT_HELP = (
     "test, without a model file, how early and how correctly actum predicts which object a hand will touch. The "
-    "recordings must contain tracked objects; an object counts as touched when the object first moves in a labelled "
-    "action"
+    "recordings must contain tracked objects. An object counts as touched when it first moves during a labelled action"
 )
 OF_MODELS = {
     "continuous": "--continuous",

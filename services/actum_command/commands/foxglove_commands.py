@@ -35,8 +35,8 @@ def foxglove(
         list[str] | None,
         typer.Option(
             help=(
-                "address of a website that may connect, such as https://app.foxglove.dev; may be repeated. Default: no "
-                "website may connect, only programs such as Foxglove's desktop program"
+                "address of a website that is allowed to connect, such as https://app.foxglove.dev. The option can be "
+                "repeated. Default: no website can connect, only programs such as Foxglove's desktop program"
             )
         ),
     ] = None,
@@ -49,7 +49,7 @@ def foxglove(
 
     Foxglove's desktop program can connect without further options. A website can connect only if --origin names the
     website; the command prints each website that it refuses. A recording starts to play when a viewer connects. To move
-    back and forth in a recording, convert the recording with 'actum export' instead.
+    back and forth in a recording, convert the recording with 'actum export', and open the converted file in Foxglove.
     """
     refuse_without("foxglove", "foxglove-sdk", "foxglove")
     from actum_command.viewers.foxglove_sinks import ServerError, served

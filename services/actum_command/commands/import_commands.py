@@ -66,8 +66,8 @@ def msrc12(
         typer.Option(
             "--composed",
             help=(
-                "write two recordings per person, in which the person does all gestures in mixed order; segments start "
-                "and end as with --trimmed. Default: one recording per sequence of the data set"
+                "write two recordings per person. In each recording, the person does all gestures in mixed order, and "
+                "segments start and end as with --trimmed. Default: one recording per sequence of the data set"
             ),
         ),
     ] = False,

@@ -47,8 +47,8 @@ def inspect(
         typer.Argument(
             metavar="[REC]...",
             help=(
-                "recordings, or folders of recordings: also draw how the model recognises the actions in these "
-                "recordings. Default: draw only the model"
+                "recordings, or folders of recordings. The command also draws how the model recognises the actions in "
+                "these recordings. Default: the command draws only the model"
             ),
         ),
     ] = None,

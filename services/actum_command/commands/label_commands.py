@@ -56,8 +56,8 @@ def list_command(
     """List the marked segments of recordings, and whether training can use each segment.
 
     A segment is one action with its start and end. Each line shows the number, start, end, duration, id and label of a
-    segment; then the origin of the marks, the person who acts, whether training can use the segment, and the
-    classifier's answer in the recording. If the recording has several sensors, the last column names the sensor.
+    segment; then the origin of the marks, the person who acts, whether training can use the segment, and the action
+    that was recognised during the recording. If the recording has several sensors, the last column names the sensor.
     """
     recordings, all_lines = chosen(files, person, with_excluded), []
     with failing_on(RecordingError):
@@ -94,7 +94,10 @@ def move(
         ),
     ] = None,
 ) -> None:
-    """Move the start or the end of a segment; the classifier's answers in the recording are not changed."""
+    """Move the start or the end of a segment.
+
+    The actions that were recognised during the recording stay unchanged.
+    """
     take, segment = _found(file, name)
     start_ns = _moved_to(start, segment.start_ns, take.first_ns)
     end_ns = _moved_to(end, segment.end_ns, take.first_ns)
@@ -106,7 +109,7 @@ def move(
 
 @app.command("delete")
 def delete(file: RecordingFile, name: SegmentName) -> None:
-    """Delete a segment with its start mark, its end mark and the classifier's answers.
+    """Delete a segment with its start mark, its end mark and the actions that were recognised in the segment.
 
     If the segment has a label, the command also deletes the frames that show the person during the segment. Frames that
     belong to another labelled segment of the same person are kept.
@@ -188,14 +191,14 @@ def picture(
         Path | None,
         typer.Option(
             help=(
-                "a model file: draw which action this model recognises in each labelled segment, and which actions "
-                "this model finds without the labels. Default: draw the actions that were recognised during the "
-                "recording"
+                "a model file. The picture shows which action this model recognises in each labelled segment, and "
+                "which actions this model finds without the labels. Default: the picture shows the actions that were "
+                "recognised during the recording"
             )
         ),
     ] = None,
 ) -> None:
-    """Draw the motion in a recording, its labelled segments and the classifier's answers over time.
+    """Draw the motion, the labelled segments and the recognised actions of a recording over time.
 
     Use the picture to check the labels.
     """

@@ -42,7 +42,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str,
         typer.Option(
             help=(
-                "name or number of the person who acts, stored in the recording. With these names, a model can be "
+                "name or number of the person who acts. The recording contains this name, so that a model can be "
                 "tested on people on whom the model was not trained"
             )
         ),
@@ -70,10 +70,9 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         str | None,
         typer.Option(
             help=(
-                "which start and end marks to store, by their origin: one or more of manual (people and other "
-                "programs), simulator (the simulated scene), replay ('actum play') and auto (the classifier), "
-                "separated by commas; or all. Default: manual. With --times, the default is to store only the marks "
-                "that --times makes"
+                "origins of the start and end marks to store, separated by commas. manual: people and other programs. "
+                "simulator: the simulated scene. replay: 'actum play'. auto: the classifier. all: all origins. "
+                "Default: manual; with --times, only the marks that --times makes are stored"
             )
         ),
     ] = None,
@@ -86,8 +85,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         typer.Option(
             "--finish",
             help=(
-                "record nothing, but turn the unfinished file OUTPUT.part into the recording OUTPUT. The file "
-                "OUTPUT.part remains if 'actum record' was killed or the disk was full"
+                "record nothing, but turn the unfinished file OUTPUT.part into the recording OUTPUT. 'actum record' "
+                "leaves the file OUTPUT.part if the command was killed or the disk was full"
             ),
         ),
     ] = False,
@@ -97,7 +96,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
             "--events",
             help=(
                 "run as a service that stores a history in the folder OUTPUT. The history contains events, start and "
-                "end marks, and the classifier's final answers"
+                "end marks, and recognised actions, but no early predictions of actions"
             ),
         ),
     ] = False,
@@ -106,7 +105,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
 ) -> None:
     """Record a sensor's streams, and the start and end marks of actions, to a file for training or for playing again.
 
-    No file is ever overwritten. If recording was interrupted, run the command with the same OUTPUT and --finish.
+    No file is ever overwritten. If a recording was interrupted, run the command again with the same OUTPUT and
+    --finish.
 
     With --events, the command runs as a service that stores a history of recognised actions in the folder OUTPUT.
 

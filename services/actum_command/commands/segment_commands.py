@@ -76,7 +76,10 @@ def start(
 @app.command()
 @with_router_flags
 def end(segment_id: Id, stamp_ns: StampOption = None) -> None:
-    """Mark the end of the action whose start has the same SEGMENT_ID; the classifier then publishes its answer."""
+    """Mark the end of the action whose start has the same SEGMENT_ID.
+
+    The classifier then publishes which action it recognised.
+    """
     mark = _mark("end", segment_id, stamp_ns=stamp_ns)
     with connect() as client:
         _put(client, mark)

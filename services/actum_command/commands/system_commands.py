@@ -134,9 +134,9 @@ def up(
     starts the service again.
 
     For two cameras, use --sensors left,right --camera 0 --camera 2. Each sensor then has its own camera and web page;
-    every other service serves both sensors. If an option of the camera or of the web page occurs once, it applies to
-    all sensors. To set such an option for each sensor, repeat the option in the order of --sensors. Simulated scenes of
-    several sensors have different seeds.
+    every other service serves both sensors. An option of the camera or of the web page applies to all sensors if the
+    option occurs once. To give each sensor a value of its own, repeat the option in the order of --sensors. Simulated
+    scenes of several sensors have different seeds.
     """
     here = settings(NodeSettings)
     if here.credentials is not None:

@@ -30,17 +30,17 @@ PRESET_HELP = (
     f"{DEFAULT.name} (default): a more accurate method"
 )
 SET_HELP = (
-    f"change a setting of --preset {PAPER.name}; may be repeated. axes=upright (default): one coordinate axis "
-    "stays vertical, and the other axes turn smoothly with the body. axes=posture: all axes turn with the body in each "
-    "frame. origin=torso (default) or origin=hips: the point from which positions are measured. "
+    f"change a setting of --preset {PAPER.name}; the option can be repeated. axes=upright (default): one coordinate "
+    "axis stays vertical, and the other axes turn smoothly with the body. axes=posture: all axes turn with the body in "
+    "each frame. origin=torso (default) or origin=hips: the point from which positions are measured. "
     f"attention={MOVING} (default): use only the joints of the body part that moves most. attention={ALL}: use all "
-    f"joints. attention={', '.join(PART_NAMES[:-1])} or {PART_NAMES[-1]}: use only the joints of this part"
+    f"joints. attention={', '.join(PART_NAMES[:-1])} or {PART_NAMES[-1]}: use only the joints of the named part"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
     "examples of background activity, which the model learns to ignore. shipped (default): half an hour of simulated "
-    "people, supplied with actum. none: no examples. FILE: a recording (.mcap) or a folder of recordings. May be "
-    "repeated"
+    "people, supplied with actum. none: no examples. FILE: a recording (.mcap) or a folder of recordings. The option "
+    "can be repeated"
 )
 SHIPPED, NONE = "shipped", "none"
 PRESETS_SHOWN = f"<{'|'.join(PRESETS)}>"
@@ -48,13 +48,13 @@ PresetOption = Annotated[str, typer.Option(metavar=PRESETS_SHOWN, help=PRESET_HE
 SetOption = Annotated[list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help=SET_HELP)]
 SeedOption = Annotated[int, typer.Option(min=0, help=SEED_HELP)]
 JOBS_HELP = (
-    "number of threads for training. More threads train faster and take more memory, but train the same model. "
-    "Default: one thread per processor"
+    "number of threads for training. With more threads, training is faster but takes more memory; the trained model is "
+    "the same. Default: one thread per processor"
 )
 ADD_TO_HELP = (
-    "add the examples in the recordings to this model, instead of training a new model. The examples may show new "
-    "actions or actions that the model knows already. The model's self-organizing maps do not change. Takes about a "
-    "second"
+    "add the examples in the recordings to this model, instead of training a new model. The examples can show new "
+    "actions, or actions that the model knows already. The model's self-organizing maps do not change. Adding the "
+    "examples takes about a second"
 )
 
 CONTINUE_HELP = (

@@ -38,9 +38,10 @@ def view(
         int, typer.Option(min=1, max=65535, help="port of the Rerun viewer's web page; used only with --web")
     ] = 9090,
 ) -> None:
-    """Show live streams or a recording in the Rerun viewer until Ctrl-C: people, objects, images, plots and events.
+    """Show live streams or a recording in the Rerun viewer until Ctrl-C.
 
-    The whole recording is loaded, so that you can move back and forth in the recording.
+    The viewer shows people, objects, images, plots and events. A recording is loaded completely, so that you can move
+    back and forth in it.
     """
     refuse_without("rerun", "rerun-sdk", "view")
     if output is not None:

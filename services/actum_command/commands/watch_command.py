@@ -57,11 +57,11 @@ def watch(
 
     For the topic 'intent' (the objects that a hand reaches for), the command prints a line only when the likeliest
     object changes, when the probability of this object first reaches 0.5 or 0.9, and when the reach ends. With --json,
-    the command prints every message.
+    the command prints all messages of this topic.
 
     On a terminal, a line at the bottom also shows each person's ongoing action and its completeness. With --from, the
-    command prints the messages of recordings instead, even of a recording that 'actum record --events' is still
-    writing.
+    command prints the messages of recordings instead of live messages. The recordings can include a file that 'actum
+    record --events' is still writing.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):
