@@ -63,7 +63,8 @@ def add(
     """
     if not samples:
         raise TrainingError(
-            "none of the examples in the recordings can be added, because none is usable: record the action again"
+            "the recordings contain no example of an action that shows a usable skeleton, so nothing can be added to "
+            "the model: record the action again"
         )
     known, rng = model.metadata, np.random.default_rng(seed)
     as_known = replace(preset, levels=tuple(known.levels), overlap=known.overlap, epochs=min(preset.epochs, EPOCHS))

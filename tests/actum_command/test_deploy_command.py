@@ -94,7 +94,7 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("init", "--hosts", "camera=a"), "name at least one camera host and one compute host"),
+        (("init", "--hosts", "camera=a"), "'camera=a' lacks a camera host or a compute host"),
         (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords cannot be used together"),
         (
             ("init", *HOSTS, "--ros-bodies", "camera"),
