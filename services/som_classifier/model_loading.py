@@ -62,7 +62,9 @@ def load_model(path: Path) -> Model:
     """
     try:
         if path.exists() and not path.is_file():
-            raise ModelError(path, "the path names a folder or a device, not a model file", "give a model file")
+            raise ModelError(
+                path, "the path names a folder or a device, not a model file", f"give a model file, or {TRAIN}"
+            )
         with path.open("rb") as stored:
             metadata, arrays = _parts(path, stored)
         return _restored(path, metadata, arrays)

@@ -178,7 +178,7 @@ def test_what_does_not_fit_the_model_is_refused(kept: Callable[[Any], Any], said
 
 
 def test_recordings_without_examples_are_refused() -> None:
-    with pytest.raises(TrainingError, match="contain no example .*: record the action again"):
+    with pytest.raises(TrainingError, match="none shows a usable skeleton: record the action again"):
         add_to(without_swings(), without_swings().kept, [], [])
 
 

@@ -42,10 +42,10 @@ def test_a_placement_turns_about_x_then_y_then_z(tmp_path) -> None:
 GOOD = "family: 4X4_50\nsize_m: 0.08\nobjects:\n  1: {name: cup}\n"
 BAD = {
     "objects:\n  1: {name: cup, size_m: 0.1}\n": (
-        "line 2: objects.1: this entry has no `family`: add `family` to the entry"
+        "line 2: objects.1: this entry of the scene file has no `family`: add `family` to the entry"
     ),
     "family: 4X4_50\nobjects:\n  1: {name: cup}\n": (
-        "line 3: objects.1: this entry has no `size_m`: add `size_m` to the entry"
+        "line 3: objects.1: this entry of the scene file has no `size_m`: add `size_m` to the entry"
     ),
     "family: 9X9\nsize_m: 0.1\nobjects:\n  1: {name: cup}\n": "line 1: family: '9X9' is not a marker dictionary: use",
     "family: 4X4_50\nsize_m: -1\nobjects:\n  1: {name: cup}\n": "line 2: size_m: Input should be greater than 0",

@@ -207,11 +207,11 @@ class Place:
         sensor = self._settings.sensor
         if self._settings.take_over:
             return (
-                f"another {self._service} ({holder.instance}{host}) still runs for sensor {sensor} and did not stop on "
+                f"another {self._service} still runs for sensor {sensor} ({holder.instance}{host}) and did not stop on "
                 f"request: stop {holder.instance} yourself"
             )
         return (
-            f"another {self._service} ({holder.instance}{host}) already runs for sensor {sensor}, and two instances "
+            f"another {self._service} already runs for sensor {sensor} ({holder.instance}{host}), and two instances "
             f"would publish every result twice. Therefore this instance ({self._settings.instance}) ends. Stop the "
             "other instance, replace it by starting this instance with --take-over (ACTUM_TAKE_OVER=1), or name "
             "another sensor with --sensor"

@@ -236,7 +236,7 @@ def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.M
     code, output = diagnosed(monkeypatch, system)
     assert code == 1
     assert (
-        f"more than one instance of pose_preprocessor runs (a on lab, {second} on lab), so every action is answered "
+        f"more than one instance of pose_preprocessor runs (a on lab, {second} on lab), so every result is published "
         "more than once: stop all instances but one"
     ) in output
 
