@@ -150,24 +150,28 @@ OF_FRAMES: Mapping[str, Problem] = {
         "The device opened, but is silent.", "Unplug it and plug it in again."
     ),
     "OpenCV says: …": Problem("OpenCV failed on the device or stream.", "Read the message."),
-    "no RealSense camera is connected": Problem("librealsense finds no camera.", "Check USB 3 cable and udev rules."),
-    "the RealSense camera with serial number … was unplugged": Problem("The camera was unplugged.", "Plug it in."),
+    "no RealSense camera is connected: plug one in": Problem(
+        "librealsense finds no camera.", "Check USB 3 cable and udev rules."
+    ),
+    "the RealSense camera with serial number … was unplugged: plug it in again": Problem(
+        "The camera was unplugged.", "Plug it in."
+    ),
     "librealsense says: …": Problem("librealsense failed.", "Read the message."),
     "the camera sends colour images in the format …, which actum cannot read: use one of the formats bgr8, …": Problem(
         "The RealSense camera sends a colour format that actum cannot read.", "Set a supported format."
     ),
-    "no camera that OpenNI 2 supports is connected": Problem(
+    "no camera that OpenNI 2 supports is connected: plug one in": Problem(
         "OpenNI 2 finds no camera.", "Install the camera's driver; see [cameras](cameras.md#depth-cameras)."
     ),
     "… was unplugged": Problem("The OpenNI device was unplugged.", "Plug it in."),
-    "OpenNI cannot play the file, because another driver in OpenNI's driver folder took the file for a camera: "
-    "remove that driver": Problem(
+    "OpenNI cannot play the file, because another driver in OpenNI's driver folder treats the file as a camera: "
+    "remove that driver from the folder": Problem(
         "A driver that does not play files claims the recording.", "Remove that driver from OpenNI's folder."
     ),
     "the camera does not send both colour and depth images: use a camera that sends both": Problem(
         "One of the two streams is missing.", "Use another camera."
     ),
-    "the camera sends colour images in the format …; actum reads only RGB888: use another driver": Problem(
+    "the camera sends colour images in the format …, but actum reads only RGB888: use another driver": Problem(
         "The OpenNI driver sends a colour format that actum cannot read.", "Use another driver."
     ),
     "OpenNI says: …": Problem("OpenNI failed.", "Read the message."),

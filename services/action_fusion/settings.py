@@ -174,9 +174,10 @@ class Settings(RememberingSettings):
             self.world_from_camera = _of_sensor(transform, self.sensor)
         elif transform is not None and SENSOR not in transform:
             raise ValueError(
-                "world-from-camera is the transform of one camera, but this process serves the sensors "
-                f"{self.sensor}: store the transform of each camera in a file of its own, and set world-from-camera "
-                f"to the files' common name, with {SENSOR} in place of the sensor's name, such as world-{SENSOR}.txt"
+                "world-from-camera gives the transform of one camera, but this process serves the sensors "
+                f"{self.sensor}: store the transform of each camera in a file of its own, with the sensor's name in "
+                "the file name, such as world-left.txt and world-right.txt. Then set world-from-camera to "
+                f"world-{SENSOR}.txt, with the word {SENSOR} exactly as it stands here"
             )
         return self
 

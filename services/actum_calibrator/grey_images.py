@@ -38,7 +38,9 @@ def read_grey(path: Path) -> Pixels:
     try:
         return decode_grey(path.read_bytes(), path.name)
     except OSError as error:
-        raise UnusablePictureError(path.name, f"the file cannot be read: {error.strerror}") from None
+        raise UnusablePictureError(
+            path.name, f"the file cannot be read ({error.strerror}): correct its name or permissions"
+        ) from None
 
 
 def decode_grey(data: bytes, name: str) -> Pixels:

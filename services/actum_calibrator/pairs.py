@@ -41,14 +41,14 @@ def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
         if stray := next((file.name for file in files if not file.stem.endswith(SUFFIXES)), None):
             raise PairingError(
                 f"the name of the picture {stray} ends neither in _a nor in _b: name the pictures of the camera that "
-                "sees the markers NAME_a and those of the camera that sees the people NAME_b, or give one folder per "
+                "sees the markers NAME_a, and those of the camera that sees the people NAME_b. Or give one folder per "
                 "camera"
             )
         sides = [_by_name([f for f in files if f.stem.endswith(end)], lambda f: f.stem[:-2]) for end in SUFFIXES]
     if alone := sorted(set(sides[0]) ^ set(sides[1])):
         raise PairingError(
-            f"only one of the two cameras has pictures named {', '.join(alone)}: add the other camera's pictures, or "
-            "remove these pictures"
+            f"only one of the two cameras has pictures named {', '.join(alone)}: add pictures of the same names from "
+            "the second camera, or remove these pictures"
         )
     return [(name, sides[0][name], sides[1][name]) for name in sorted(sides[0])]
 
@@ -63,8 +63,8 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     for file in files:
         if name_of(file) in named:
             raise PairingError(
-                f"{named[name_of(file)]} and {file} are pictures of one camera with the same name: delete or rename "
-                "one of the two"
+                f"{named[name_of(file)]} and {file} are two pictures of one camera, and both have the same name: "
+                "delete or rename one of the two"
             )
         named[name_of(file)] = file
     return named

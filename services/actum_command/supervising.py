@@ -101,7 +101,10 @@ class Supervisor:
         """Schedule the restart of a program that has ended, and return a line that says so."""
         if child.process.returncode == UNUSABLE:  # a restart would end the same way
             where = f"in {self._log.name}" if self._log else "above"
-            raise UnusableError(f"{child.program.name} cannot start with its settings: see its error message {where}")
+            raise UnusableError(
+                f"{child.program.name} cannot start with its settings: see the error message of {child.program.name} "
+                f"{where}"
+            )
         if child.process.returncode == TAKEN:
             child.due_s = now_s + ELSEWHERE_S
             return f"{child.program.name} already runs elsewhere: it starts here when that instance ends"

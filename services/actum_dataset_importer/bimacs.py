@@ -173,8 +173,8 @@ def _check_targets(labels: Sequence[Label], bodies: Mapping[int, str]) -> None:
     for label in labels:
         if label.target is not None and label.target not in bodies:
             raise ValueError(
-                f"the labels name the object {OBJECTS[label.target]}, but the file of positions has no columns for it: "
-                "download both files again"
+                f"the labels name the object {OBJECTS[label.target]}, but the file of positions has no columns for "
+                "this object; download both files again"
             )
 
 
@@ -210,11 +210,12 @@ def _labels(folder: Path, person: str, take: str) -> list[Label]:
             f"{folder} contains no labels_subject_{person}/*/take_{take}.json: put the folder labels_subject_{person} "
             f"next to subject{person}_take{take}.csv"
         )
+    file = files[0]
     try:
-        content = json.loads(files[0].read_text())
+        content = json.loads(file.read_text())
         return [label for hand in HANDS for label in _hand_labels(hand, content[f"{hand}_hand"])]
     except (KeyError, TypeError, ValueError, IndexError) as error:
-        raise DatasetError(f"{files[0]} is damaged ({error!r}): download the file again") from None
+        raise DatasetError(f"{file} is damaged ({error!r}): download the file again") from None
 
 
 def _hand_labels(hand: Hand, content: list[Any]) -> list[Label]:

@@ -44,7 +44,9 @@ class Naming:
         try:
             compiled = re.compile(pattern)
         except re.error as error:
-            raise DatasetError(f"--pattern {pattern!r} is not a regular expression: {error}") from None
+            raise DatasetError(
+                f"--pattern {pattern!r} is not a valid regular expression ({error}): correct the expression"
+            ) from None
         if "action" not in compiled.groupindex:
             raise DatasetError(
                 f"--pattern {pattern!r} does not say which part of a file name is the action: enclose that part in "

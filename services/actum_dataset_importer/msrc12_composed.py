@@ -76,7 +76,7 @@ def composed(path: Path, names: Sequence[str], sensor: str) -> Iterator[Take]:
         labels = [piece.label for piece in pieces]
         if not labels or 2 * max(map(labels.count, labels)) > len(labels) + 1:
             raise DatasetError(
-                f"{path} holds too few different gestures to compose a recording of them: leave out --composed"
+                f"{path} contains too few different gestures for a composed recording: leave out --composed"
             )
         yield _joined(mixed(pieces, rng), f"composed_p{int(person):02d}_{number + 1}", person, sensor)
 

@@ -52,7 +52,7 @@ def files_of(path: Path, pattern: str) -> list[Path]:
     files = [path] if path.is_file() else sorted(path.glob(pattern))
     if not files:
         raise DatasetError(
-            f"{path} contains no file named {pattern}: give such a file, or a folder that contains such files"
+            f"{path} contains no file named {pattern}: give a file of such a name, or a folder that contains such files"
         )
     return files
 

@@ -45,12 +45,10 @@ class Signed:
         """
         key = serialization.load_pem_private_key(key_pem, password=None)
         if not isinstance(key, ec.EllipticCurvePrivateKey):
-            raise ValueError(
-                "the private key is not an elliptic-curve key, so it is not a key that 'actum deploy' made"
-            )
+            raise ValueError("the private key is not an elliptic-curve key; use a key that 'actum deploy' made")
         certificate = x509.load_pem_x509_certificate(certificate_pem)
         if certificate.public_key() != key.public_key():
-            raise ValueError("the private key does not belong to the certificate")
+            raise ValueError("the private key does not belong to the certificate; use the two files of one authority")
         return cls(certificate, key)
 
 

@@ -27,6 +27,11 @@ SERVICES_USER = 10001
 """The user as which containers run, who has to be able to read the private keys."""
 PRIVATE = 0o600
 """The mode of files that nobody but their owner may read."""
+NEW_AUTHORITY = (
+    "delete this folder, run 'actum deploy init' and copy all new credentials to their machines, because all earlier "
+    "credentials become invalid"
+)
+"""What to do where the authority cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -123,15 +128,16 @@ def authority_of(root: Path, may_be_made: bool) -> Signed:
         make_private(folder)
         (folder / KEY).chmod(PRIVATE)
         found = Signed.load((folder / AUTHORITY).read_bytes(), (folder / KEY).read_bytes())
-        if lasting(found, 1) <= 0:
-            expired = found.certificate.not_valid_after_utc
-            raise ValueError(f"the certificate of the authority expired at {expired:%Y-%m-%d %H:%M} UTC")
     except (OSError, ValueError) as error:
         raise SettingsError(
             f"the certificate authority in {folder} cannot be used ({error}): restore {AUTHORITY} and {KEY} in this "
-            "folder. Or delete the folder, run 'actum deploy init' and copy the new files to all machines, because a "
-            "new authority makes all earlier credentials invalid"
+            f"folder, or {NEW_AUTHORITY}"
         ) from None
+    if lasting(found, 1) <= 0:
+        expired = found.certificate.not_valid_after_utc
+        raise SettingsError(
+            f"the certificate authority in {folder} expired at {expired:%Y-%m-%d %H:%M} UTC: {NEW_AUTHORITY}"
+        )
     return found
 
 

@@ -104,7 +104,7 @@ class Deployment:
         for each in identities:
             if each not in known:
                 raise SettingsError(
-                    f"revoke: {each!r} names no credentials that can be revoked: use one of "
+                    f"revoke: {each!r} is not the name of credentials that can be revoked: use one of "
                     f"{', '.join(sorted(known))}. {ROUTERS_CANNOT}"
                 )
         again = {each: self.revoked.get(each, 0) + 1 for each in identities}
@@ -124,21 +124,20 @@ class Deployment:
         try:
             read = TypeAdapter(cls).validate_json((folder / FILE).read_bytes())
             if not read.hosts:
-                raise SettingsError("the list `hosts` is empty: list at least one host")
+                raise SettingsError("the list `hosts` is empty; list at least one host")
             for host in read.hosts:  # as if it had been said to `actum deploy init`
                 host_of(f"{host.name}={host.endpoint}")
                 for sensor in host.sensors:
                     chunk(sensor)
         except FileNotFoundError:
             raise SettingsError(
-                f"{folder} contains no {FILE}: create the deployment with 'actum deploy init'"
+                f"{folder} contains no file {FILE}: create the deployment with 'actum deploy init'"
             ) from None
         except (OSError, ValidationError, SettingsError, InvalidKeyError) as error:
             problem = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
             raise SettingsError(
-                f"{folder / FILE} cannot be used ({problem}): correct this file. Do not delete this file alone, "
-                "because it lists the revoked credentials. If the file cannot be corrected, make all credentials anew: "
-                "delete the file and the folder authority/, run 'actum deploy init', and copy each host's folder to "
-                "its machine again"
+                f"{folder / FILE} cannot be used ({problem}): correct this file, which lists the revoked credentials. "
+                "If you cannot correct the file, delete it together with the folder authority/, run 'actum deploy "
+                "init' to make all credentials again, and copy each host's folder to its machine"
             ) from None
         return read

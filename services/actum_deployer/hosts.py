@@ -80,15 +80,17 @@ def hosts_of(text: str, sensors: str | None = None) -> tuple[Host, ...]:
     named = sensors.split(",") if sensors is not None else [f"kinect{number}" for number in range(len(cameras))]
     if not cameras or not computing or len({host.name for host in hosts}) < len(hosts):
         raise SettingsError(
-            f"hosts: {text!r}: name at least one camera host and one compute host, and give each host a different "
-            "name, such as camera=ADDRESS,camera2=ADDRESS,compute=ADDRESS"
+            f"hosts: {text!r} lacks a camera host or a compute host, or contains two hosts of one name: write for "
+            "example camera=ADDRESS,camera2=ADDRESS,compute=ADDRESS"
         )
     if len(named) != len(cameras) or len(set(named)) < len(named):
-        raise SettingsError(f"sensors: {sensors!r}: give {len(cameras)} different sensor names, one per camera")
+        raise SettingsError(
+            f"sensors: {sensors!r} does not consist of {len(cameras)} different names: name one sensor for each camera"
+        )
     places = [_normal(host.endpoint) for host in hosts]
     if len({*places}) < len(places):
         raise SettingsError(
-            f"hosts: {text!r}: two hosts have the same address and port: give one of them another address or port"
+            f"hosts: in {text!r}, two hosts have the same address and port: give one of the two another address or port"
         )
     if len(computing) > len(named):
         raise SettingsError(
@@ -114,17 +116,18 @@ def host_of(text: str) -> Host:
     chunk(name)
     if not any(name.startswith(kind) for kind in KINDS):
         raise SettingsError(
-            f"hosts: {text!r}: the host's name, before the '=', has to begin with {' or '.join(KINDS)}, such as "
-            "camera=192.168.1.5"
+            f"hosts: {text!r} does not begin with {' or '.join(KINDS)}: begin the name before the '=' with one of the "
+            "two words, such as camera2=192.168.1.5"
         )
     if not address or not own_port.isdecimal() or not 0 < int(own_port) <= HIGHEST_PORT:
         raise SettingsError(
-            f"hosts: {text!r}: use NAME=ADDRESS or NAME=ADDRESS:PORT, with a port from 1 to {HIGHEST_PORT}"
+            f"hosts: {text!r} does not have the form NAME=ADDRESS or NAME=ADDRESS:PORT: use this form, with a port "
+            f"from 1 to {HIGHEST_PORT}"
         )
     address = address.removeprefix("[").removesuffix("]")
     if not _can_be_reached(address):
         raise SettingsError(
-            f"hosts: {text!r}: {address!r} is not the address of a machine: use a host name or an IP address"
+            f"hosts: {address!r} in {text!r} is not the address of a machine: use a host name or an IP address"
         )
     return Host(name, address, int(own_port))
 

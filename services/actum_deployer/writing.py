@@ -75,8 +75,9 @@ def revoked_before(root: Path) -> Mapping[str, int]:
     if (root / FILE).exists() or not (root / AUTHORITYS).exists():
         return Deployment.load(root).revoked if (root / FILE).exists() else {}
     raise SettingsError(
-        f"{root} contains {AUTHORITYS}/ but no {FILE}, which lists the revoked credentials: restore {FILE}, or delete "
-        f"the folder {AUTHORITYS}/, run 'actum deploy init' again and copy all folders to their machines again"
+        f"{root} contains the folder {AUTHORITYS}/ but not the file {FILE}, which lists the revoked credentials: "
+        f"restore {FILE}. Or delete the folder {AUTHORITYS}/, run 'actum deploy init' again and copy all folders to "
+        "their machines again"
     )
 
 

@@ -34,8 +34,8 @@ def reliability_picture(segments: Sequence[AnsweredSegment]) -> Figure:
     known = labelled_answers(segments)
     if len(known) < MIN_ANSWERS:
         raise ValueError(
-            f"the reliability diagram needs at least {MIN_ANSWERS} segments with both a label and an answer; there are "
-            f"only {len(known)}"
+            f"the reliability diagram needs at least {MIN_ANSWERS} labelled segments in which the model recognised an "
+            f"action, but there are only {len(known)}: give more recordings"
         )
     filled_bins = bins(known)
     figure = figure_with_layout(

@@ -63,7 +63,8 @@ def add(
     """
     if not samples:
         raise TrainingError(
-            "none of the examples in the recordings can be added, because none is usable: record the action again"
+            "no example in the recordings can be added to the model, because none shows a usable skeleton: record the "
+            "action again"
         )
     known, rng = model.metadata, np.random.default_rng(seed)
     as_known = replace(preset, levels=tuple(known.levels), overlap=known.overlap, epochs=min(preset.epochs, EPOCHS))

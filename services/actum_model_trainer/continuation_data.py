@@ -74,8 +74,8 @@ def instants_of(streams: Sequence[LabelledStream]) -> Instants:
     ]
     if not found:
         raise TrainingError(
-            "no recording shows a person for long enough to learn to predict later postures: record a person for at "
-            f"least {2 * STEP_NS / SECOND_NS:g} s without a break"
+            "the recordings are too short to train the prediction of later postures: record a person for at least "
+            f"{2 * STEP_NS / SECOND_NS:g} s without a break"
         )
     joined = [np.concatenate(each) for each in zip(*found, strict=True)]
     count = len(joined[0])

@@ -28,8 +28,8 @@ def people_of(recordings: Sequence[Recording]) -> list[str]:
     if len(people) < 2:
         known = f"only {people[0]}" if any(people) else "nobody"
         raise TrainingError(
-            "each person is tested with a model trained on the others, so recordings of at least two people are "
-            f"needed. The given recordings name {known}: record another person with --person NAME"
+            "each person is tested with a model that was trained on other people, so recordings of at least two "
+            f"people are needed. The given recordings name {known}: record another person with --person NAME"
         )
     return people
 

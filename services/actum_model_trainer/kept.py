@@ -55,8 +55,8 @@ class KeptWindows:
         """
         if f"{KEPT}window_coordinates" not in arrays:
             raise KeptError(
-                "the model file does not contain the training data of the search for unmarked actions, which adding "
-                f"an action needs: {TRAIN_AGAIN}"
+                "no action can be added to this model, because its file lacks the training data for finding actions "
+                f"without marks: {TRAIN_AGAIN}"
             )
         with _naming_damage():
             coordinates = arrays[f"{KEPT}window_coordinates"].astype(np.float32)
@@ -136,7 +136,7 @@ def kept_data(arrays: Arrays, model: PyramidModel) -> TrainingData:
     """
     if not arrays:
         raise KeptError(
-            f"the model file contains no training data, so no action can be added to the model: {TRAIN_AGAIN}"
+            f"no action can be added to this model, because its file contains no training data: {TRAIN_AGAIN}"
         )
     with _naming_damage():
         data = _restored({name.removeprefix(KEPT): array for name, array in arrays.items()}, model)
@@ -145,7 +145,8 @@ def kept_data(arrays: Arrays, model: PyramidModel) -> TrainingData:
         inputs = len(pooled.directions), len(features.directions)
         if data.labels != model.labels or inputs != (model.stages.axes.shape[1], len(model.opinion.axes)):
             raise KeptError(
-                f"the training data in the file does not fit the model (other actions or other sizes): {TRAIN_AGAIN}"
+                "the training data in the model file belongs to another model (other actions or other sizes): "
+                f"{TRAIN_AGAIN}"
             )
         _expect_whole(data, pooled, features)
     return data
@@ -155,7 +156,7 @@ def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
     """Check that restored arrays fit one another.
 
     Raises:
-        ValueError: one does not.
+        KeptError: one does not.
     """
     count, last = len(data.measures.labels), len(data.stages[-1].vectors)
     for name, array in vars(data.measures).items():
@@ -163,8 +164,10 @@ def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
     for number, (vectors, samples) in enumerate(data.stages):
         _expect(f"stage_{number}", vectors, (len(samples), pooled.rank))
         if np.setdiff1d(samples, np.arange(count)).size:
-            raise ValueError(
-                f"stage_{number}_samples refers to samples that do not exist; there are only {count} samples"
+            raise KeptError(
+                f"the model file is damaged (its array stage_{number}_samples refers to more samples than the {count} "
+                "in "
+                f"the file): {TRAIN_AGAIN}"
             )
     _expect("background", data.background, (len(data.background), pooled.rank))
     _expect("convolved_spread", data.convolved.spread, (len(features.directions),))
@@ -174,7 +177,10 @@ def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
 
 def _expect(name: str, array: NDArray[Any], expected: tuple[int, ...]) -> None:
     if array.shape != expected:
-        raise ValueError(f"the array {name} has shape {array.shape}; expected {expected}")
+        raise KeptError(
+            f"the model file is damaged (its array {name} has the shape {array.shape} instead of {expected}): "
+            f"{TRAIN_AGAIN}"
+        )
 
 
 @contextmanager

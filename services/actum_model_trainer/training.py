@@ -156,8 +156,8 @@ def add_to(
     """
     if of_none := counterexamples(streams):
         raise TrainingError(
-            f"{of_none[0].file} contains segments labelled {NONE}, which cannot be added to a trained model: train a "
-            "model from all recordings, or delete these segments"
+            f"{of_none[0].file} contains segments with the label '{NONE}'. Such segments cannot be added to an "
+            "existing model: train a new model from all recordings, or delete these segments"
         )
     digest = hashlib.sha256(f"{model.metadata.data_digest}{digest_of(samples)}".encode()).hexdigest()
     return _added(model, kept, samples, streams, digest, seed, progress)

@@ -119,7 +119,7 @@ def load(path: Path) -> Catalogue:
         root = yaml.compose(path.read_text(encoding="utf-8"), Loader=yaml.SafeLoader)
         content = yaml.SafeLoader("").construct_document(root) if root is not None else None
     except (OSError, UnicodeDecodeError) as error:
-        raise SceneFileError(f"{path} cannot be read as text: {error}") from None
+        raise SceneFileError(f"{path} cannot be read as text ({error}): give a text file in UTF-8") from None
     except YAML_ERRORS as error:
         raise SceneFileError(f"{path} is not YAML: {' '.join(str(error).split())}") from None
     if root is None or not isinstance(content, dict):
@@ -129,8 +129,8 @@ def load(path: Path) -> Catalogue:
         scene = SceneFile.model_validate(content)
     except RecursionError:
         raise SceneFileError(
-            f"{path} has a YAML alias that refers to itself: replace each alias (*name) by the content of its anchor "
-            "(&name)"
+            f"{path} contains a YAML alias (*name) inside the part that this alias stands for (&name): remove this "
+            "alias"
         ) from None
     except ValidationError as error:
         raise SceneFileError("; ".join(_problem(path, root, each) for each in error.errors())) from None
@@ -172,7 +172,8 @@ def _mounted_markers(path: Path, root: yaml.Node, scene: SceneFile) -> Iterator[
                     path,
                     root,
                     location,
-                    f"`{field}` is missing: add `{field}` to this entry or to the top level of the file",
+                    f"this entry of the scene file has no `{field}`: add `{field}` to the entry, or to the top level "
+                    "of the file as the default of all entries",
                 )
             ids = len(family(name).codes)
             if marker.id >= ids:

@@ -50,9 +50,9 @@ class CorrectionCommands:
         frames = list(self._recent.of(request.agent, request.start_ns, request.end_ns))
         if len(frames) < FEWEST_FRAMES:
             raise Refusal(
-                f"only {len(frames)} frames of person {request.agent} in this event are still stored, but at least "
-                f"{FEWEST_FRAMES} are needed: correct an event within {LONGEST_S / 60:.0f} minutes after it ends, and "
-                "before the sensor or the trainer restarts"
+                f"this event can no longer be corrected, because only {len(frames)} frames of person {request.agent} "
+                f"are still stored, and at least {FEWEST_FRAMES} are needed. Frames are kept for {LONGEST_S / 60:.0f} "
+                "minutes, and are lost when the sensor or the trainer restarts"
             )
         first, last = frames[0], frames[-1]
         label = request.label or NONE

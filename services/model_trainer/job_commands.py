@@ -125,7 +125,10 @@ class JobCommands:
         """End a running job; it leaves nothing."""
         job = self._jobs.get(request.job)
         if self._running is None or self._job is None or self._job.id != job.id:
-            raise Refusal(f"the job {job.id} cannot be cancelled, because it is not running; its state is {job.state}")
+            raise Refusal(
+                f"the job {job.id} cannot be cancelled, because its state is {job.state}: only running jobs can be "
+                "cancelled"
+            )
         self._running.end()
         self._running = None
         return self._end(self._job.model_copy(update={"state": "cancelled", "message": "cancelled"}))

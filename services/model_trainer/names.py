@@ -52,8 +52,8 @@ def checked_label(name: str) -> str:
     label = checked_name(name)
     if cause := NO_ACTIONS.get(label.casefold()):
         raise ValueError(
-            f"{label!r} cannot be the name of an action, because {cause}: use another name, or record background "
-            "(people who do none of the actions)"
+            f"{label!r} cannot be the name of an action, because {cause}: use another name. To record people who do "
+            "none of the actions, record background instead"
         )
     return label
 

@@ -17,7 +17,7 @@ def small_file(path: Path) -> bytes:
         ValueError: it is too large to be one of ours.
     """
     if path.exists() and not path.is_file():
-        raise OSError(f"{path} is not a regular file: move it to another folder")
+        raise OSError(f"{path} is not a regular file: move {path} to another folder")
     with path.open("rb") as file:
         content = file.read(LARGEST_BYTES + 1)
     if len(content) > LARGEST_BYTES:

@@ -46,9 +46,9 @@ class UploadStore:
         total, files = sum(sizes.values()) + size, len(sizes.keys() | {name})
         if total > MOST_TOTAL_BYTES or files > MOST_FILES:
             raise Refusal(
-                f"{name} cannot be stored, because {files} files with {total} bytes would wait to be imported; at "
-                f"most {MOST_FILES} files with {MOST_TOTAL_BYTES} bytes may wait. Import some of the waiting files "
-                "first, or restart the service, which deletes all waiting files"
+                f"{name} cannot be stored, because {files} files with {total} bytes would then wait for their import, "
+                f"and at most {MOST_FILES} files with {MOST_TOTAL_BYTES} bytes are allowed to wait. Import some of the "
+                "waiting files first, or restart the service, which deletes all waiting files"
             )
         with unfinished.open("ab" if offset else "wb") as file:
             file.write(data)

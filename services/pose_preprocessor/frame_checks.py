@@ -38,22 +38,30 @@ def check_frame(joints: Array, missing: Sequence[int], reach_limit_m: float, bon
     if missing:
         names = [JOINTS[index] for index in missing]
         if not _NEEDED.isdisjoint(names) or not any(pair.isdisjoint(names) for pair in _PAIRS):
-            raise BadFrameError("missing_joint", f"these joints are missing: {', '.join(names)}")
+            raise BadFrameError(
+                "missing_joint",
+                f"the skeleton lacks the joints {', '.join(names)}: let the camera see the person's trunk",
+            )
     if not (np.abs(joints) <= reach_limit_m).all():
         known = {joint: joints[i] for i, joint in enumerate(JOINTS) if i not in missing}
         for joint, place_m in known.items():
             if not np.isfinite(place_m).all():
-                raise BadFrameError("not_finite", f"a coordinate of {joint} is NaN or infinite")
+                raise BadFrameError(
+                    "not_finite",
+                    f"a coordinate of the joint {joint} is NaN or infinite: publish null for a joint that is not known",
+                )
         for joint, place_m in known.items():
             if np.abs(place_m).max() > reach_limit_m:
                 raise BadFrameError(
                     "absurd_joint",
-                    f"{joint} is further from the camera than {reach_limit_m:g} m, the limit that reach_limit_m sets",
+                    f"the joint {joint} is more than {reach_limit_m:g} m from the camera, the limit that the setting "
+                    "reach_limit_m gives: publish joints in metres",
                 )
     _, lengths2 = bones_of(joints)
     if np.fmax.reduce(lengths2) > bone_limit_m**2:
         child = JOINTS[_CHILDREN[int(np.nanargmax(lengths2))]]
         raise BadFrameError(
             "absurd_bone",
-            f"the bone that ends at {child} is longer than {bone_limit_m:g} m, the limit that bone_limit_m sets",
+            f"the bone that ends at the joint {child} is longer than {bone_limit_m:g} m, the limit that the setting "
+            "bone_limit_m gives: publish joints in metres, in the order of joint_names",
         )

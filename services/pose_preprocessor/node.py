@@ -102,7 +102,8 @@ class _Person:
         if joints == self.joints:
             raise BadFrameError(
                 "repeated_joints",
-                "all joints equal those of the previous frame, so the sensor lost the person or is frozen",
+                "all joints equal those of the previous frame, so the body tracker lost the person or is frozen: if "
+                "this lasts, step into view, or restart the sensor service",
             )
         self.joints = joints
         self.bridge.keep(stamp_ns, bridged, missing)

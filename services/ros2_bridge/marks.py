@@ -24,18 +24,24 @@ def segment_of(payload: bytes, sensor: str) -> Segment:
     """
     if len(payload) > MOST_BYTES:
         raise BadMarkError(
-            f"the message that marks an action has {len(payload)} bytes; at most {MOST_BYTES} are allowed"
+            f"a message that marks an action has {len(payload)} bytes; at most {MOST_BYTES} bytes are allowed: send a "
+            "shorter message"
         )
     try:
         fields = pydantic_core.from_json(from_cdr(payload, STRING).data, allow_inf_nan=False)
     except NotThatTypeError as error:
-        raise BadMarkError(f"the message that marks an action is not a std_msgs/String: {error}") from None
+        raise BadMarkError(
+            f"a message that marks an action is not a std_msgs/String ({error}): send a JSON object as the data of a "
+            "std_msgs/String"
+        ) from None
     except ValueError as error:
-        raise BadMarkError(f"the message that marks an action is not JSON: {error}") from None
+        raise BadMarkError(
+            f"a message that marks an action is not JSON ({error}): send a JSON object as the data of a std_msgs/String"
+        ) from None
     if not isinstance(fields, dict):
         raise BadMarkError(
-            f"the message that marks an action is a JSON {type(fields).__name__}: send a JSON object with some of the "
-            f"fields {', '.join(FIELDS)}"
+            f"a message that marks an action must be a JSON object with some of the fields {', '.join(FIELDS)}; this "
+            f"message is a JSON {type(fields).__name__}"
         )
     unknown = [name for name in fields if name not in FIELDS]
     if unknown:

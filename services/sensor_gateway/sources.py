@@ -36,7 +36,7 @@ def source_of(settings: Settings, start_ns: int) -> Source:
     """
     if settings.source is None:
         raise SourceError(
-            "no source is set: set --source (ACTUM_SOURCE), or start scene_simulator instead for a simulated scene"
+            "no source is set: set --source (ACTUM_SOURCE) or, for a simulated scene, start scene_simulator"
         )
     if settings.source == "recording":
         source = _recording(settings, start_ns)

@@ -33,7 +33,10 @@ class AssociativeSom:
     def __post_init__(self) -> None:
         shape = self.changes.shape
         if len(shape) != 3 or shape != (2, shape[1], shape[1]) or not np.isfinite(self.changes).all():
-            raise ValueError(f"the associations have shape {shape}; expected finite numbers of shape (2, units, units)")
+            raise ValueError(
+                f"the associations have the shape {shape}, or are not all finite: give finite numbers of the shape (2, "
+                "units, units)"
+            )
 
     @classmethod
     def untrained(cls, units: int) -> "AssociativeSom":

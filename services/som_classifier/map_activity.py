@@ -94,8 +94,8 @@ def resampled(path: Array, points: int) -> Array:
     """
     if not len(path) or points < 2:
         raise ValueError(
-            f"a path given by {len(path)} points cannot be resampled to {points} evenly spaced points: give a path of "
-            "at least 1 point, and ask for at least 2 evenly spaced points"
+            f"a path of {len(path)} points cannot be resampled to {points} points: give a path of at least 1 point, "
+            "and ask for at least 2 points"
         )
     lengths = np.hypot(*np.diff(path, axis=0).T)
     arc_lengths = np.concatenate(([0.0], np.cumsum(lengths)))

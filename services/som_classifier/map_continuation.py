@@ -46,9 +46,9 @@ class MapContinuation(Continuation):
         units, shares = self.association.changes.shape[1], (2, len(STEPS))
         if units != len(self.som.weights) or self.shares.shape != shares or not np.isfinite(self.shares).all():
             raise ValueError(
-                f"the prediction of postures does not fit the map: the associations are of {units} units, the weights "
-                f"have shape {self.shares.shape}; expected {len(self.som.weights)} units and finite weights of shape "
-                f"{shares}"
+                f"the prediction of postures (associations of {units} units, weights of the shape {self.shares.shape}) "
+                f"does not fit the map, which needs associations of {len(self.som.weights)} units and finite weights "
+                f"of the shape {shares}: train the model again"
             )
 
     @classmethod

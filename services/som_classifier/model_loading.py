@@ -42,11 +42,15 @@ VERSION = re.compile(r"[0-9][0-9A-Za-z.+-]{0,40}")
 """What the version in a file may look like if a message is to name it."""
 
 
+TRAIN = "train a model with 'actum train REC… -o MODEL'"
+"""What to do where there is no usable model file."""
+
+
 class ModelError(ValueError):
     """A file that no model can be loaded from; the text names the file, the problem and what to do."""
 
-    def __init__(self, path: Path, problem: str, advice: str = "train a model") -> None:
-        super().__init__(f"{path}: {problem}; {advice} with 'actum train REC… -o MODEL'")
+    def __init__(self, path: Path, problem: str, remedy: str) -> None:
+        super().__init__(f"{path}: {problem}; {remedy}")
 
 
 def load_model(path: Path) -> Model:
@@ -58,16 +62,18 @@ def load_model(path: Path) -> Model:
     """
     try:
         if path.exists() and not path.is_file():
-            raise ModelError(path, "the path names a folder or a device, not a model file")
+            raise ModelError(
+                path, "the path names a folder or a device, not a model file", f"give a model file, or {TRAIN}"
+            )
         with path.open("rb") as stored:
             metadata, arrays = _parts(path, stored)
         return _restored(path, metadata, arrays)
     except ModelError:
         raise
     except FileNotFoundError:
-        raise ModelError(path, "the model file does not exist") from None
+        raise ModelError(path, "the model file does not exist", f"correct the file's name, or {TRAIN}") from None
     except (*UNREADABLE, AttributeError) as error:
-        raise ModelError(path, f"the file is not a model of actum, or is damaged ({_problem(error)})") from None
+        raise ModelError(path, f"the file is not a model of actum, or is damaged ({_problem(error)})", TRAIN) from None
 
 
 def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
@@ -75,7 +81,9 @@ def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
     about = json.loads(metadata)
     kind, made_by = about.get("kind"), str(about.get("actum_version"))
     if kind not in KINDS:
-        raise ModelError(path, f"the model is of kind {kind!r}, which this version of actum does not support")
+        raise ModelError(
+            path, f"this version of actum does not support models of kind {kind!r}", f"update actum, or {TRAIN}"
+        )
     try:
         return KINDS[kind].restored(metadata, arrays)
     except UNREADABLE as error:
@@ -83,8 +91,8 @@ def _restored(path: Path, metadata: str, arrays: Arrays) -> Model:
             raise
         raise ModelError(
             path,
-            f"actum {made_by} made the model, and actum {__version__} cannot use it ({_problem(error)})",
-            "train a new model from the same recordings",
+            f"actum {made_by} made the model, and actum {__version__} cannot use this model ({_problem(error)})",
+            "train a new model from the same recordings with 'actum train REC… -o MODEL'",
         ) from None
 
 
@@ -99,7 +107,7 @@ def _problem(error: Exception) -> str:
 def _parts(path: Path, stored: IO[bytes]) -> tuple[str, Arrays]:
     """Return the metadata as JSON, and the arrays by name."""
     if not zipfile.is_zipfile(stored):  # NumPy's own error would advise to read it as a pickle
-        raise ModelError(path, "the file is not a model of actum, or is damaged")
+        raise ModelError(path, "the file is not a model of actum, or is damaged", TRAIN)
     _refuse_bomb(stored)
     with np.load(stored, allow_pickle=False) as file:
         names = [name for name in file.files if name != "metadata" and not name.startswith(KEPT)]
@@ -118,7 +126,7 @@ def kept_in(path: Path) -> Arrays:
             with np.load(stored, allow_pickle=False) as file:
                 return {name: file[name] for name in file.files if name.startswith(KEPT)}
     except UNREADABLE as error:
-        raise ModelError(path, f"the file is not a model of actum, or is damaged ({_problem(error)})") from None
+        raise ModelError(path, f"the file is not a model of actum, or is damaged ({_problem(error)})", TRAIN) from None
 
 
 def _refuse_bomb(stored: IO[bytes]) -> None:
@@ -131,7 +139,10 @@ def _refuse_bomb(stored: IO[bytes]) -> None:
         size = sum(max(member.file_size, _array_bytes(archive, member)) for member in archive.infolist())
     most = LEAST_BYTES + MOST_INFLATION * stored.seek(0, os.SEEK_END)
     if size > most:
-        raise ValueError(f"the arrays in the file would take {size} bytes of memory; at most {most} bytes are allowed")
+        raise ValueError(
+            f"the file's arrays would take {size} bytes of memory, more than the {most} bytes that actum allows; use a "
+            "file that 'actum train' wrote"
+        )
     stored.seek(0)
 
 
@@ -140,7 +151,9 @@ def _array_bytes(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> int:
     with archive.open(member) as array:
         read_header = HEADERS.get(NPY.read_magic(array))
         if read_header is None:
-            raise ValueError(f"its entry {member.filename} is not a NumPy array")
+            raise ValueError(
+                f"the file's entry {member.filename} is not a NumPy array; use a file that 'actum train' wrote"
+            )
         shape, _, dtype = read_header(array)
     return int(math.prod(shape) * dtype.itemsize)
 

@@ -101,7 +101,7 @@ class PaperModel(Model):
             ValueError: there is no frame.
         """
         if not frames:
-            raise ValueError("the segment contains no frame, so no action can be recognised")
+            raise ValueError("the segment contains no frame, so no action can be recognised: give at least one frame")
         part, attended = self.attended(frames)
         cosines = self.layer3.cosines(self._second_activity(trajectory(attended))).tolist()
         winner = int(np.argmax(cosines))

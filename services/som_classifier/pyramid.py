@@ -125,7 +125,7 @@ class Pyramid:
             ValueError: there is no frame.
         """
         if not len(segment):
-            raise ValueError("the segment contains no frame")
+            raise ValueError("the segment contains no frame, so it has no feature vector: give at least one frame")
         vector = np.empty(self.cells * len(segment.sums[0]), np.float32)
         self.pool(segment, np.array([[0, len(segment)]]), vector[None])
         return vector

@@ -146,7 +146,7 @@ class PyramidModel(Model):
             ValueError: there is no frame.
         """
         if not frames:
-            raise ValueError("the segment contains no frame, so no action can be recognised")
+            raise ValueError("the segment contains no frame, so no action can be recognised: give at least one frame")
         activities: list[FrameActivity] = [frame.activity for frame in frames]
         stages = self.stages.weights((frames[-1].stamp_ns - frames[0].stamp_ns) / SECOND_NS, complete)
         evidence = self.evidence(frames) if complete else None

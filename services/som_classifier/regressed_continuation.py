@@ -49,7 +49,8 @@ class RegressedContinuation(Continuation):
         expected = (INPUTS,), (rank, ANSWERS), (ANSWERS,), (2, len(STEPS))
         if shapes != expected:
             raise ValueError(
-                f"the model's arrays for predicting postures have the shapes {shapes}; expected {expected}"
+                f"the model's arrays for predicting postures have the shapes {shapes} instead of {expected}: train the "
+                "model again"
             )
 
     @classmethod

@@ -26,8 +26,8 @@ class SupervisedLayer:
         weights = np.array(self.weights, order="C")
         if weights.ndim != 2 or not np.allclose(np.linalg.norm(weights, axis=1), 1.0):
             raise ValueError(
-                f"the weights have shape {weights.shape}; expected a matrix (actions, inputs) in which each row is a "
-                "unit vector (Euclidean norm 1)"
+                f"the weights (shape {weights.shape}) are not a matrix of unit vectors: give one row of Euclidean norm "
+                "1 for each action"
             )
         weights.setflags(write=False)
         object.__setattr__(self, "weights", weights)

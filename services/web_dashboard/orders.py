@@ -72,7 +72,9 @@ class Order(BaseModel):
     @model_validator(mode="after")
     def _check_one(self) -> Self:
         if (self.ask is None) == (self.mark is None):
-            raise ValueError("the message has to have exactly one of the fields `ask` and `mark`")
+            raise ValueError(
+                "a message from the page must contain either the field `ask` or the field `mark`, but not both"
+            )
         return self
 
 
@@ -110,13 +112,13 @@ class Orders:
             return self.refuse(order.id, str(error))
         except Exception:
             log.exception(
-                "a bug occurred in web_dashboard while it carried out a request from the page. The request may be "
-                "done only in part; web_dashboard continues to run. Report the bug with the lines that follow"
+                "a bug occurred in web_dashboard while it carried out a request from the page, so perhaps only a part "
+                "of the request is done. web_dashboard continues to run. Report the bug with the lines that follow"
             )
             return self.refuse(
                 order.id,
-                "a bug occurred in web_dashboard, so this request may be done only in part: report the bug with the "
-                "last lines of web_dashboard's log",
+                "a bug occurred in web_dashboard, so perhaps only a part of this request is done: report the bug with "
+                "the last lines of web_dashboard's log",
             )
 
     def refuse(self, number: int | None, refusal: str, refused: bool = False) -> str:

@@ -70,7 +70,8 @@ class Settings(ServiceSettings):
     def _check_token(self) -> Self:
         if not (is_local(self.page_host) or self.page_guarded or self.page_token):
             raise ValueError(
-                f"page-host {self.page_host} lets other machines open the page: set page-token (ACTUM_PAGE_TOKEN) to "
-                f"{SHORTEST_TOKEN} characters or more; 'openssl rand -hex 16' prints a suitable token"
+                f"page-host {self.page_host} lets other machines open the page, which therefore needs a token: set "
+                f"page-token (ACTUM_PAGE_TOKEN) to {SHORTEST_TOKEN} characters or more. 'openssl rand -hex 16' prints "
+                "a suitable token"
             )
         return self

@@ -93,7 +93,7 @@ class Calibration(_Part):
     def _complete(cls, coefficients: list[float]) -> list[float]:
         if len(coefficients) not in DISTORTION_LENGTHS:
             allowed = " or ".join(map(str, DISTORTION_LENGTHS))
-            raise ValueError(f"there are {len(coefficients)} distortion coefficients; expected {allowed} coefficients")
+            raise ValueError(f"there are {len(coefficients)} distortion coefficients: give {allowed} coefficients")
         return coefficients
 
     @field_validator("skeleton_from_image")
@@ -101,8 +101,8 @@ class Calibration(_Part):
     def _rigid(cls, numbers: list[float] | None) -> list[float] | None:
         if numbers is not None and not geometry.is_rigid(geometry.from_flat(numbers), FURTHEST_M):
             raise ValueError(
-                "the matrix is not a rigid transform: give a rotation and a position in metres as a 4x4 matrix, row "
-                "by row"
+                "skeleton_from_image is not a rigid transform: give a rotation and a position in metres as a 4x4 "
+                "matrix, row by row"
             )
         return numbers
 
@@ -145,7 +145,7 @@ class Calibration(_Part):
             with path.open("rb") as file:
                 content = yaml.safe_load(file.read(LARGEST_BYTES))
         except OSError as error:
-            raise CalibrationError(f"{path}: {error.strerror}; {CALIBRATION_REMEDY}") from None
+            raise CalibrationError(f"{path} cannot be read ({error.strerror}): {CALIBRATION_REMEDY}") from None
         except YAML_ERRORS:
             raise CalibrationError(
                 f"{path} is not a calibration (the file is not YAML): {CALIBRATION_REMEDY}"

@@ -78,8 +78,11 @@ def _fields_of(part: Any) -> dict[str, Any]:
     if isinstance(part, BaseModel):
         return vars(part)
     if isinstance(part, int):
-        raise OverflowError(f"the integer {part} in a message does not fit into 64 bits")
-    raise TypeError(f"a message contains a {type(part).__name__}, which cannot be encoded")
+        raise OverflowError(f"the integer {part} in a message does not fit into 64 bits: use a smaller integer")
+    raise TypeError(
+        f"a message contains a value of the Python type {type(part).__name__}, which cannot be encoded: use numbers, "
+        "text, bytes, lists and maps"
+    )
 
 
 def _packing() -> msgpack.Packer:
@@ -121,7 +124,9 @@ def decode(key: str, payload: bytes, encoding: str = "") -> Message:
     topic = address.topic
     if len(payload) > topic.max_bytes:
         raise DecodeError(
-            "too_large", f"the message on {key} has {len(payload)} bytes; at most {topic.max_bytes} are allowed"
+            "too_large",
+            f"the message on {key} has {len(payload)} bytes; at most {topic.max_bytes} bytes are allowed: send a "
+            "smaller message",
         )
     _check_encoding(encoding, topic.message)
     return _validated(key, address, _unpack(key, payload))
@@ -136,14 +141,14 @@ def _check_encoding(encoding: str, expected: type[Message]) -> None:
     if match["schema"] != expected.SCHEMA:
         raise DecodeError(
             "wrong_schema",
-            f"the message's encoding says schema {match['schema']}, but this key requires {expected.SCHEMA}: publish "
-            f"messages of schema {expected.SCHEMA} on this key",
+            f"the message's encoding names the schema {match['schema']}, but this key requires {expected.SCHEMA}: "
+            f"publish messages of the schema {expected.SCHEMA} on this key",
         )
     if int(match["version"]) > expected.VERSION:
         raise DecodeError(
             "higher_version",
-            f"the message ({encoding}) has a newer version than this program, which knows version {expected.VERSION}: "
-            "update actum",
+            f"the message ({encoding}) has a newer version than {expected.VERSION}, the newest version that this "
+            "program can read: update actum",
         )
 
 
@@ -153,12 +158,15 @@ def _unpack(key: str, payload: bytes) -> dict[str, Any]:
         fields = msgpack.unpackb(payload) if len(payload) <= keys.MOST_BYTES else unpack(payload)
     except UNPACK_ERRORS as error:
         raise DecodeError(
-            "not_msgpack", f"the message on {key} cannot be decoded as MessagePack ({type(error).__name__}: {error})"
+            "not_msgpack",
+            f"the message on {key} cannot be decoded as MessagePack ({type(error).__name__}: {error}): send one "
+            "MessagePack map of field names to values",
         ) from None
     if not isinstance(fields, dict):
         raise DecodeError(
             "not_a_map",
-            f"the message on {key} contains a {type(fields).__name__}; expected a map of field names to values",
+            f"the message on {key} is not a MessagePack map, but decodes to a Python {type(fields).__name__}: send one "
+            "map of field names to values",
         )
     return fields
 
@@ -171,7 +179,9 @@ def with_different_names(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
     """
     made = dict(pairs)
     if len(made) < len(pairs):
-        raise ValueError("a field name occurs twice in the same object")
+        raise ValueError(
+            "a message contains two fields of the same name; each field of a map or JSON object needs a name of its own"
+        )
     return made
 
 
@@ -189,7 +199,10 @@ def unpack(payload: bytes) -> Any:
         nonlocal left
         left -= 1 + len(container)
         if left < 0:
-            raise ValueError(f"a message contains more than {MOST_VALUES} values, including nested values")
+            raise ValueError(
+                f"a message contains more than {MOST_VALUES} values (the values in lists and maps count, too); send "
+                "fewer values"
+            )
         return container
 
     return msgpack.unpackb(
@@ -214,7 +227,7 @@ def _validated(key: str, address: keys.Address, fields: dict[str, Any]) -> Messa
         raise DecodeError(
             "wrong_key",
             f"the message arrived on the key {key}, but its fields sensor, agent and service belong to the key "
-            f"{actual}",
+            f"{actual}: correct these fields, or publish the message on that other key",
         )
     return message
 

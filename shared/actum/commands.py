@@ -135,7 +135,10 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
         Refusal: it is too large, or no JSON object or MessagePack map.
     """
     if len(payload) > MAX_REQUEST_BYTES:
-        raise Refusal(f"the request has {len(payload)} bytes; at most {MAX_REQUEST_BYTES} are allowed")
+        raise Refusal(
+            f"the request has {len(payload)} bytes; at most {MAX_REQUEST_BYTES} bytes are allowed: send a smaller "
+            "request"
+        )
     if not payload:
         return {}
     try:
@@ -147,7 +150,8 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
         ) from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
         raise Refusal(
-            f"the request is a {type(fields).__name__}: send a JSON object, or a MessagePack map whose keys are text"
+            f"the request decodes to a Python {type(fields).__name__}: send a JSON object, or a MessagePack map whose "
+            "keys are text"
         )
     return fields
 
@@ -155,7 +159,10 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
 def _from_json(payload: bytes) -> Any:
     """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
     if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
-        raise ValueError(f"a message contains more than {MOST_VALUES} values, including nested values")
+        raise ValueError(
+            f"a message contains more than {MOST_VALUES} values (the values in lists and maps count, too); send fewer "
+            "values"
+        )
     return json.loads(payload, object_pairs_hook=with_different_names)
 
 
@@ -170,7 +177,10 @@ def packed(fields: Mapping[str, Any], encoding: str) -> bytes:
             return bytes(msgpack.packb(fields, use_bin_type=True))
         return json.dumps(fields, ensure_ascii=False, allow_nan=False).encode()
     except (ValueError, TypeError, OverflowError, RecursionError) as error:
-        raise Refusal(f"a field's value cannot be encoded as {encoding}: {error}") from None
+        raise Refusal(
+            f"the value of a field cannot be encoded as {encoding} ({error}): use text, finite numbers of at most 64 "
+            "bits, lists and maps"
+        ) from None
 
 
 def _check_encodable(fields: dict[str, Any]) -> None:
@@ -202,7 +212,9 @@ def _inner(value: Any) -> Iterator[Any]:
         case None | str() | float() | int() | bytes():
             return
         case _:
-            raise Refusal(f"the request contains a {type(value).__name__}: use only JSON types and bytes")
+            raise Refusal(
+                f"the request contains a value of the Python type {type(value).__name__}: use only JSON types and bytes"
+            )
 
 
 def problems(error: ValidationError) -> str:

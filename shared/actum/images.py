@@ -53,7 +53,8 @@ def _refuse_large(image: Image) -> None:
     if image.width * image.height > LARGEST_PIXELS:
         raise UnusableImageError(
             "image_too_large",
-            f"the image has {image.width}x{image.height} pixels; at most {LARGEST_PIXELS} pixels in all are allowed",
+            f"the image has {image.width}x{image.height} pixels; at most {LARGEST_PIXELS} pixels in all are allowed: "
+            "send a smaller image",
         )
 
 
@@ -64,8 +65,8 @@ def _raw(image: Image) -> Pixels:
     if len(image.data) != expected:
         raise UnusableImageError(
             "image_size_mismatch",
-            f"the image has {len(image.data)} bytes; {image.width}x{image.height} pixels in the format bgr8 need "
-            f"{expected} bytes",
+            f"the image has {len(image.data)} bytes, but {image.width}x{image.height} pixels in the format bgr8 need "
+            f"{expected} bytes: correct the fields width and height, or send all bytes",
         )
     return np.frombuffer(image.data, dtype=np.uint8).reshape(image.height, image.width, 3)
 
@@ -87,13 +88,14 @@ def _from_jpeg(image: Image, flags: int) -> Pixels:
     if size[0] * size[1] > LARGEST_PIXELS:
         raise UnusableImageError(
             "image_too_large",
-            f"the JPEG has {size[0]}x{size[1]} pixels; at most {LARGEST_PIXELS} pixels in all are allowed",
+            f"the JPEG has {size[0]}x{size[1]} pixels; at most {LARGEST_PIXELS} pixels in all are allowed: send a "
+            "smaller image",
         )
     if size != (image.width, image.height):
         raise UnusableImageError(
             "image_size_mismatch",
-            f"the JPEG has {size[0]}x{size[1]} pixels, but width and height of the image message are {image.width} "
-            f"and {image.height}: set both to the size of the JPEG",
+            f"the JPEG has {size[0]}x{size[1]} pixels, but the image message gives {image.width}x{image.height}: set "
+            "the fields width and height of the message to the size of the JPEG",
         )
     if has_too_many_scans(image.data):
         raise UnusableImageError(
@@ -112,14 +114,18 @@ def _jpeg_size(data: bytes) -> tuple[int, int]:
     if not data.startswith(JPEG_START):
         raise UnusableImageError(
             "undecodable_image",
-            f"the format of the image is jpeg, but its {len(data)} bytes do not start with FF D8 as those of a JPEG do",
+            f"the image message has the format jpeg, but its {len(data)} bytes do not start with FF D8 as every "
+            "JPEG does: send a JPEG file, or set the format to bgr8 for raw pixels",
         )
     try:
         width, height = imagesize.get(io.BytesIO(data), exif_rotation=False)
     except (ValueError, struct.error) as error:
-        raise UnusableImageError("undecodable_image", f"the header of the JPEG is damaged: {error}") from None
+        raise UnusableImageError(
+            "undecodable_image", f"the header of the JPEG is damaged ({error}): send a whole JPEG file"
+        ) from None
     if width <= 0 or height <= 0:
         raise UnusableImageError(
-            "undecodable_image", f"the JPEG of {len(data)} bytes is damaged: its header gives no image size"
+            "undecodable_image",
+            f"the header of the JPEG ({len(data)} bytes) gives no image size: send a whole JPEG file",
         )
     return width, height

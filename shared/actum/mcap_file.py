@@ -26,6 +26,8 @@ Files made to fill memory and time do more."""
 
 REMEDY = "give a recording made by `actum record` or `actum import`"
 """What to do about a file that cannot be used."""
+AGAIN = "record or import the recording again"
+"""What to do about a damaged file."""
 
 
 class RecordingError(ValueError):
@@ -82,9 +84,8 @@ class McapFile:
                 case Message():
                     channel = channels.get(record.channel_id)
                     if channel is None:
-                        raise self._damaged(
-                            f"a message belongs to channel {record.channel_id}, which the file does not describe"
-                        )
+                        problem = f"a message belongs to channel {record.channel_id}, which the file does not describe"
+                        raise RecordingError(self.path, f"the recording is damaged ({problem})", AGAIN)
                     encoding = encoding_of(channel, schemas.get(channel.schema_id, ""))
                     yield StoredMessage(record.publish_time, channel.topic, record.data, encoding)
 
@@ -95,16 +96,19 @@ class McapFile:
             RecordingError: as `metadata`.
         """
         with self._opened() as file:
-            source = cast(BinaryIO, _Exact(file))
+            source = cast(BinaryIO, _Exact(self.path, file))
             reader = StreamReader(source, emit_chunks=True, validate_crcs=True, record_size_limit=LARGEST_CHUNK)
-            chunks = _Chunks(os.fstat(file.fileno()).st_size)
+            chunks = _Chunks(self.path, os.fstat(file.fileno()).st_size)
             try:
                 for record in reader.records:
                     yield from chunks.records(record) if isinstance(record, Chunk) else (record,)
             except EndOfFile:
                 self.truncated = True
+            except RecordingError:
+                raise
             except DAMAGE as error:
-                raise self._damaged(f"{type(error).__name__}: {error}") from None
+                problem = f"{type(error).__name__}: {error}"
+                raise RecordingError(self.path, f"the recording is damaged ({problem})", AGAIN) from None
 
     def _opened(self) -> BinaryIO:
         try:
@@ -120,20 +124,20 @@ class McapFile:
         file.seek(0)
         return file
 
-    def _damaged(self, what: str) -> RecordingError:
-        return RecordingError(self.path, f"the recording is damaged ({what})", "record or import the recording again")
-
 
 class _Exact:
     """A file of which `read` returns all bytes asked for or raises `EndOfFile`: the library misses short reads."""
 
-    def __init__(self, file: BinaryIO) -> None:
+    def __init__(self, path: Path, file: BinaryIO) -> None:
+        self._path = path
         self._file = file
         self._remaining = os.fstat(file.fileno()).st_size
 
     def read(self, length: int) -> bytes:
         if length < 0:
-            raise ValueError(f"the file states a length of {length} bytes for one of its records; expected 0 or more")
+            raise RecordingError(
+                self._path, f"the recording is damaged (a record has the negative length {length})", AGAIN
+            )
         if length > self._remaining:
             raise EndOfFile
         self._remaining -= length
@@ -143,47 +147,52 @@ class _Exact:
 class _Chunks:
     """Decompresses the chunks of one pass over a file, and refuses those that grow beyond all measure."""
 
-    def __init__(self, file_bytes: int) -> None:
+    def __init__(self, path: Path, file_bytes: int) -> None:
+        self._path = path
         self._left = LARGEST_CHUNK + MOST_INFLATION * file_bytes
 
     def records(self, chunk: Chunk) -> list[McapRecord]:
         """Return the records in a chunk.
 
         Raises:
-            ValueError: it is too large once decompressed, or of another size than it says.
+            RecordingError: it is too large once decompressed, of another size than it says, or compressed otherwise.
         """
         size = chunk.uncompressed_size
         self._left -= size
         if size > LARGEST_CHUNK or self._left < 0:
-            raise ValueError(
-                f"a block of {len(chunk.data)} compressed bytes in the file would decompress to {size} bytes; at most "
-                f"{min(LARGEST_CHUNK, self._left + size)} bytes are allowed for this block"
+            most = min(LARGEST_CHUNK, self._left + size)
+            raise RecordingError(
+                self._path,
+                f"the recording is damaged (a block of {len(chunk.data)} bytes would decompress to {size} bytes, more "
+                f"than the {most} bytes that actum allows)",
+                REMEDY,
             )
-        data = _decompressed(chunk)
+        data = self._decompressed(chunk)
         if len(data) != size:
-            raise ValueError(
-                f"a compressed block in the file should decompress to {size} bytes, but decompresses to another size: "
-                "the file is damaged"
+            raise RecordingError(
+                self._path,
+                f"the recording is damaged (a block does not decompress to the {size} bytes that the block states)",
+                AGAIN,
             )
         return breakup_chunk(replace(chunk, compression="", data=data), validate_crc=True)
 
-
-def _decompressed(chunk: Chunk) -> bytes:
-    """Decompress a chunk, at most a byte more than it says that there is."""
-    most = chunk.uncompressed_size + 1
-    match chunk.compression:
-        case "":
-            return chunk.data
-        case "zstd":
-            with zstandard.ZstdDecompressor().stream_reader(chunk.data) as stream:
-                return stream.read(most)
-        case "lz4":
-            return bytes(lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most))
-        case other:
-            raise ValueError(
-                f"a block in the file is compressed with {other!r}, which actum cannot read: compress the file with "
-                "zstd or lz4"
-            )
+    def _decompressed(self, chunk: Chunk) -> bytes:
+        """Decompress a chunk, at most a byte more than it says that there is."""
+        most = chunk.uncompressed_size + 1
+        match chunk.compression:
+            case "":
+                return chunk.data
+            case "zstd":
+                with zstandard.ZstdDecompressor().stream_reader(chunk.data) as stream:
+                    return stream.read(most)
+            case "lz4":
+                return bytes(lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, max_length=most))
+            case other:
+                raise RecordingError(
+                    self._path,
+                    f"the recording is damaged or is compressed with {other!r}, which actum cannot read",
+                    "compress the recording with zstd or lz4",
+                )
 
 
 def encoding_of(channel: Channel, schema: str) -> str:

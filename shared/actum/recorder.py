@@ -154,7 +154,9 @@ class Recorder:
             OSError: the disk takes no more; nothing can be written after that.
         """
         if message.stamp_ns is None:
-            raise ValueError(f"the message has no time stamp (stamp_ns), so it cannot be recorded: {message!r}")
+            raise ValueError(
+                f"a message without a time stamp cannot be recorded: set stamp_ns of the message {message!r}"
+            )
         numbered = self._numbering.numbered(message)
         frame = codec.encode(numbered)
         assert numbered.seq is not None

@@ -12,7 +12,7 @@ from mcap.writer import Writer
 
 from actum import codec, messages
 from actum.atomic_file import UNFINISHED, claim, created, replaced
-from actum.mcap_file import REMEDY, McapFile, RecordingError, StoredMessage, encoding_of
+from actum.mcap_file import AGAIN, McapFile, RecordingError, StoredMessage, encoding_of
 from actum.recorder import CHUNK_BYTES, MESSAGE_ENCODING, METADATA, SCHEMA_ENCODING, TakenError, json_schema, unfinished
 
 Change = Callable[[StoredMessage], StoredMessage | None]
@@ -92,7 +92,7 @@ def _copy(
             raise RecordingError(
                 source.path,
                 f"the recording is damaged (a message belongs to channel {error}, which the file does not describe)",
-                REMEDY,
+                AGAIN,
             ) from None
     if metadata and not copying.described:
         writer.add_metadata(METADATA, dict(metadata))

@@ -129,7 +129,7 @@ angle = st.floats(-3.1, 3.1)
 def test_the_transform_of_one_camera_is_not_taken_for_that_of_several() -> None:
     identity = geometry.flat(np.eye(4))
     assert Settings(sensor="left", world_from_camera=identity).fixed_from_camera is not None
-    with pytest.raises(ValidationError, match="to the files' common name, with {sensor} in place of the sensor's name"):
+    with pytest.raises(ValidationError, match="Then set world-from-camera to world-{sensor}.txt"):
         Settings(sensor="left,right", world_from_camera=identity)
 
 

@@ -108,7 +108,7 @@ def test_what_is_no_object_is_refused(payload: bytes, encoding: str) -> None:
     + [(2**70, MSGPACK), (math.nan, JSON)],
 )
 def test_fields_that_cannot_be_encoded_are_refused(value: Any, encoding: str) -> None:
-    with pytest.raises(Refusal, match=f"a field's value cannot be encoded as {encoding}"):
+    with pytest.raises(Refusal, match=f"the value of a field cannot be encoded as {encoding}"):
         packed({"name": value}, encoding)
 
 

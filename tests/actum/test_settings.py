@@ -66,7 +66,7 @@ def test_a_zenoh_configuration_that_cannot_be_used_is_refused_by_name(content: s
     file = tmp_path / "zenoh.json5"
     if content is not None:
         file.write_text(content)
-    with pytest.raises(SettingsError, match=r"zenoh\.json5 is not a Zenoh configuration") as refused:
+    with pytest.raises(SettingsError, match=r"zenoh\.json5 is not a valid Zenoh configuration") as refused:
         client_config(ServiceSettings(zenoh_config=file))
     assert "\n" not in str(refused.value)
 

@@ -332,7 +332,7 @@ def test_where_nothing_can_be_written_nothing_is_trained_or_evaluated(
         ("ACTUM_SENSOR", "Kinect 0", "settings: sensor: 'Kinect 0' is not a name: use 1 to 64 of the characters a-z"),
         ("ACTUM_CONNECT", "127.0.0.1:7551", "'127.0.0.1:7551' is not an endpoint: use tcp/host:port"),
         ("ACTUM_CONNECT", "foo", "'foo' is not an endpoint: use tcp/host:port"),
-        ("ACTUM_ZENOH_CONFIG", "/nowhere.json5", "/nowhere.json5 is not a Zenoh configuration"),
+        ("ACTUM_ZENOH_CONFIG", "/nowhere.json5", "/nowhere.json5 is not a valid Zenoh configuration"),
         ("ACTUM_CONFIG", "/nowhere.toml", "/nowhere.toml, which does not exist or is not a file"),
     ],
 )
@@ -453,7 +453,7 @@ def test_a_demo_ends_where_it_is_and_leaves_no_files(
 
 def test_a_router_refuses_a_configuration_that_zenoh_refuses(tmp_path: Path) -> None:
     (tmp_path / "router.json5").write_text("{nonsense")
-    assert "the router cannot start on " in refused("router", "--config", tmp_path / "router.json5")
+    assert "the router cannot start with " in refused("router", "--config", tmp_path / "router.json5")
 
 
 def test_why_nothing_could_be_learnt_is_said_before_that_it_could_not(tmp_path: Path) -> None:

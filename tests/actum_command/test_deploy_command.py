@@ -94,7 +94,7 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("init", "--hosts", "camera=a"), "name at least one camera host and one compute host"),
+        (("init", "--hosts", "camera=a"), "'camera=a' lacks a camera host or a compute host"),
         (("init", *HOSTS, "--open", "--passwords"), "--open and --passwords cannot be used together"),
         (
             ("init", *HOSTS, "--ros-bodies", "camera"),
@@ -104,7 +104,7 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", ""), "'' is not the name of a frame"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", "a\nExecStart=b"), "is not the name of a frame"),
         (("init", *HOSTS, "--ros2", "0", "--ros-bodies", 'the "camera"'), "is not the name of a frame"),
-        (("rotate",), "contains no deployment.json"),
+        (("rotate",), "contains no file deployment.json"),
     ],
 )
 def test_what_cannot_be_done_is_refused(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:

@@ -47,7 +47,9 @@ def test_contacts_are_counted_and_compared_with_what_is_simpler(reaches: Path, t
 )
 def test_options_of_models_are_refused_before_anything_is_read(flags: tuple[str, ...], named: str) -> None:
     said = refused("evaluate", "--intent", "nowhere.mcap", *flags)
-    assert said.endswith(f"--intent uses no model of actions: leave out {named}")
+    assert said.endswith(
+        f"--intent does not use a model of actions, so {named} would have no effect: leave out {named}"
+    )
 
 
 def test_recordings_without_objects_are_refused(tmp_path: Path) -> None:

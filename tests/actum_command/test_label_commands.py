@@ -157,7 +157,7 @@ def test_a_recording_without_marks_is_listed_drawn_and_added_to(tmp_path: Path) 
         (("move", 1, "--start", "soon"), "'soon' is not a time"),
         (("move", 1, "--start", "nan"), "'nan' is not a time"),
         (("add", 2.0, 3.0, "wave"), "overlap the segment first"),
-        (("relabel", 1, ""), "the label must have 1 to 200 characters"),
+        (("relabel", 1, ""), "the label has 0 characters: use 1 to 200 characters"),
         (("cut", 5, "wave"), "overlap the segment first"),
     ],
 )

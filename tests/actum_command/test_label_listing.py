@@ -116,7 +116,7 @@ def test_actions_of_several_sensors_are_listed_with_their_sensor(two_sensors: Pa
 
 def test_an_action_that_several_sensors_name_alike_is_changed_at_one_of_them_alone(two_sensors: Path) -> None:
     said = refusal("delete", two_sensors, "one")
-    assert "2 segments have the id 'one': give the number of one of these segments instead, 1 or 2" in said
+    assert "2 segments have the id 'one': give the number of the segment (1 or 2) instead of this id" in said
     label("relabel", two_sensors, 2, "pull")
     label("move", two_sensors, 2, "--end", "-0.1")
     of_other = [m for m in of_segment(two_sensors, "one") if m.sensor == "kinect0"]

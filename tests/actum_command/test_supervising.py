@@ -73,7 +73,8 @@ def test_what_cannot_be_used_as_it_is_set_is_not_started_again(ending: type[Prog
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", [str(UNUSABLE)]))
         with pytest.raises(
-            UnusableError, match=f"worker cannot start with its settings: see its error message in {tmp_path / 'log'}"
+            UnusableError,
+            match=f"worker cannot start with its settings: see the error message of worker in {tmp_path / 'log'}",
         ):
             outcome(supervisor)
     assert (tmp_path / "log").read_text() == "mode: no such thing\n"

@@ -134,7 +134,9 @@ def test_other_objects_are_read_as_well(tmp_path: Path) -> None:
 def test_an_object_that_the_table_lacks_is_named(tmp_path: Path) -> None:
     path = take(tmp_path)
     path.write_text(path.read_text().replace("Whisk_", "Table_"))
-    with pytest.raises(DatasetError, match="the object whisk, but the file of positions has no columns for it"):
+    with pytest.raises(
+        DatasetError, match="the object whisk, but the file of positions has no columns for this object"
+    ):
         read_take(path, "kinect0")
 
 

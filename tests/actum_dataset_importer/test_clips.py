@@ -64,7 +64,7 @@ def test_a_name_tells_action_and_person(name: str, pattern: str, told: tuple[str
 @pytest.mark.parametrize(
     ("pattern", "names", "complaint"),
     [
-        ("(", "", "not a regular expression"),
+        ("(", "", "not a valid regular expression"),
         (r"(?P<person>.*)", "", "does not say which part"),
         (DEFAULT_PATTERN, "1", "does not have the form NUMBER=NAME,NUMBER=NAME: write for example 1=wave"),
         (DEFAULT_PATTERN, "1=", "does not have the form NUMBER=NAME,NUMBER=NAME: write for example 1=wave"),

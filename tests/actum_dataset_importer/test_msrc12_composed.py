@@ -79,7 +79,7 @@ def test_the_same_set_makes_the_same_streams(folder: Path, both: list[Take]) -> 
 
 
 def test_one_gesture_alone_cannot_be_mixed(tmp_path: Path) -> None:
-    with pytest.raises(DatasetError, match=r"p01\.npz holds too few different gestures"):
+    with pytest.raises(DatasetError, match=r"p01\.npz contains too few different gestures"):
         list(composed(person(tmp_path, NAMES[:1]), NAMES[:1], "door"))
 
 

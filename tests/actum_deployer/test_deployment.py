@@ -78,6 +78,7 @@ def test_what_is_no_deployment_is_refused(content: str | None, tmp_path: Path) -
     if content is not None:
         (tmp_path / "deployment.json").write_text(content)
     with pytest.raises(
-        SettingsError, match=r"contains no deployment\.json" if content is None else r"deployment\.json cannot be used"
+        SettingsError,
+        match=r"contains no file deployment\.json" if content is None else r"deployment\.json cannot be used",
     ):
         Deployment.load(tmp_path)

@@ -85,7 +85,7 @@ def test_the_same_streams_make_the_same_continuation(kind: str) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_streams_that_are_too_short_are_refused(kind: str) -> None:
-    with pytest.raises(TrainingError, match=r"no recording shows a person for long enough.*at least 0.5 s"):
+    with pytest.raises(TrainingError, match=r"the recordings are too short to train.*at least 0.5 s"):
         with_continuation(without_continuation(kind), [standing_stream(POSTURE, 0.3)])
 
 

@@ -373,7 +373,7 @@ def test_a_correction_that_is_refused_is_told(room: Lesson, models: Any) -> None
     room.page.give(held_back(frames, 1, agent=2))
     models.get_by_role("button", name="like wave, but not like enough: 0.1, not told").click()
     press(models, "None of the actions")
-    says(models, "explanation", "only 0 frames of person 2 in this event are still stored")
+    says(models, "explanation", "because only 0 frames of person 2 are still stored")
 
 
 def test_a_model_that_somebody_named_is_said_to_be_only_read(room: Lesson, models: Any) -> None:

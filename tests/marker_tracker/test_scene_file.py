@@ -41,9 +41,11 @@ def test_a_placement_turns_about_x_then_y_then_z(tmp_path) -> None:
 
 GOOD = "family: 4X4_50\nsize_m: 0.08\nobjects:\n  1: {name: cup}\n"
 BAD = {
-    "objects:\n  1: {name: cup, size_m: 0.1}\n": "line 2: objects.1: `family` is missing: add `family` to this entry",
+    "objects:\n  1: {name: cup, size_m: 0.1}\n": (
+        "line 2: objects.1: this entry of the scene file has no `family`: add `family` to the entry"
+    ),
     "family: 4X4_50\nobjects:\n  1: {name: cup}\n": (
-        "line 3: objects.1: `size_m` is missing: add `size_m` to this entry"
+        "line 3: objects.1: this entry of the scene file has no `size_m`: add `size_m` to the entry"
     ),
     "family: 9X9\nsize_m: 0.1\nobjects:\n  1: {name: cup}\n": "line 1: family: '9X9' is not a marker dictionary: use",
     "family: 4X4_50\nsize_m: -1\nobjects:\n  1: {name: cup}\n": "line 2: size_m: Input should be greater than 0",
@@ -71,7 +73,7 @@ BAD = {
     'a: !!int ""': "is not YAML",
     "a: 2026-13-45": "is not YAML",
     "[" * 3000: "is not YAML",
-    "objects: &all\n  1: *all\n": "refers to itself",
+    "objects: &all\n  1: *all\n": "inside the part that this alias stands for",
     "a0: &a0 [x]\n"
     + "".join(f"a{n + 1}: &a{n + 1} [{f'*a{n}, ' * 9}]\n" for n in range(9)): "a0: there is no such field",
 }

@@ -67,7 +67,7 @@ def test_only_the_frames_of_the_event_and_of_who_acted_are_stored(teacher: Teach
     assert {each.agent for frame in frames for each in frame.agents} == {1}
     early_ns, late_ns = event()["start_ns"] - SLACK_NS, event()["end_ns"] + SLACK_NS
     assert all(early_ns <= frame.stamp_ns <= late_ns for frame in frames)
-    with pytest.raises(Refusal, match="only 0 frames of person 2 in this event are still stored"):
+    with pytest.raises(Refusal, match="because only 0 frames of person 2 are still stored"):
         teacher.ask("correct", **event(agent=2))
 
 

@@ -120,7 +120,9 @@ def test_no_action_is_called_as_what_is_none(teacher: Teacher, label: str, why: 
     example = teacher.examples()[0]["id"]
     with pytest.raises(Refusal, match=f"^{why}"):
         teacher.ask("record", set="kitchen", label=label)
-    with pytest.raises(Refusal, match=r"use another name, or record background \(people who do none of the actions\)$"):
+    with pytest.raises(
+        Refusal, match=r"use another name\. To record people who do none of the actions, record background instead$"
+    ):
         teacher.ask("relabel", set="kitchen", example=example, label=label)
     with pytest.raises(Refusal, match=f"^{why}"):
         teacher.ask("import_video", set="kitchen", upload="clip", label=label)

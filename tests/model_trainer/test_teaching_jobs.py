@@ -189,7 +189,7 @@ def test_one_job_runs_at_a_time_and_tells_how_far_it_is(teacher: Teacher) -> Non
         teacher.ask("evaluate", set="kitchen")
     assert teacher.ask("cancel", job=begun["id"])["state"] == "cancelled"
     assert teacher.jobs[-1].ended
-    with pytest.raises(Refusal, match="cannot be cancelled, because it is not running"):
+    with pytest.raises(Refusal, match="cannot be cancelled, because its state is cancelled"):
         teacher.ask("cancel", job=begun["id"])
     assert not list((teacher.folder / "jobs").glob("*.work"))
 

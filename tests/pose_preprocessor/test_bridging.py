@@ -60,7 +60,10 @@ def test_a_joint_is_bridged_no_longer_than_it_can_be_known(node: PosePreprocesso
     assert found.upright is not None
     assert (found.upright[HAND] is not None) is bridged
     lost = put(node, 2 * SECOND_NS, lacking(walking(3), "torso"))
-    assert (lost.valid, lost.reason) == (False, "missing_joint: these joints are missing: torso")
+    assert (lost.valid, lost.reason) == (
+        False,
+        "missing_joint: the skeleton lacks the joints torso: let the camera see the person's trunk",
+    )
 
 
 def test_one_persons_joints_are_not_anothers(node: PosePreprocessor) -> None:

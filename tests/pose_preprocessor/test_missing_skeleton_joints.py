@@ -74,9 +74,9 @@ def test_whatever_is_missing_the_rest_is_published_or_the_frame_is_named_unusabl
             assert known(posture.joints_m) == set(JOINTS) - missing
             assert known(posture.joints) == known(posture.upright) == reachable(missing)
         else:
-            assert (
-                posture.reason
-                == f"missing_joint: these joints are missing: {', '.join(name for name in JOINTS if name in missing)}"
+            named = ", ".join(name for name in JOINTS if name in missing)
+            assert posture.reason == (
+                f"missing_joint: the skeleton lacks the joints {named}: let the camera see the person's trunk"
             )
     assert node.counters.rejects == ({} if usable(missing) else {"missing_joint": 2})
 

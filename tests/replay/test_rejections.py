@@ -104,7 +104,8 @@ def test_a_segment_is_recognised_where_there_are_three_frames() -> None:
 
 def test_a_person_whose_joints_are_never_usable() -> None:
     frozen = [skeleton(i * FRAME_NS, STANDING, seq=i) for i in range(20)]
-    why = "(repeated_joints: all joints equal those of the previous frame, so the sensor lost the person or is frozen)"
+    why = "(repeated_joints: all joints equal those of the previous frame, so the body tracker lost the person or is "
+    why += "frozen: if this lasts, step into view, or restart the sensor service)"
     marks = mark("start", 3), mark("end", 12)
     assert reasons(told(*marks, skeletons=frozen)) == [("s", f"no person with a usable frame {why}")]
     of_agent = mark("start", 3, agent=1), mark("end", 12)
@@ -117,7 +118,8 @@ def test_a_joint_that_nobody_can_do_without_is_named() -> None:
     no_torso = np.where(np.arange(15)[:, None] == INDEX["torso"], np.nan, STANDING)
     frames = [skeleton(i * FRAME_NS, no_torso, seq=i) for i in range(20)]
     ((_, reason),) = reasons(told(mark("start", 3), mark("end", 12), skeletons=frames))
-    assert reason == "no person with a usable frame (missing_joint: these joints are missing: torso)"
+    why = "(missing_joint: the skeleton lacks the joints torso: let the camera see the person's trunk)"
+    assert reason == f"no person with a usable frame {why}"
 
 
 @pytest.mark.parametrize(

@@ -56,7 +56,7 @@ def test_a_mark_may_say_when_who_with_which_hand_and_what() -> None:
         (text("start"), "not JSON"),
         (text('{"kind": "start"'), "not JSON"),
         (text("[" * 5000), "not JSON"),
-        (text("[]"), "a JSON list: send a JSON object with some of the fields kind, segment_id, stamp_ns"),
+        (text("[]"), "must be a JSON object with some of the fields kind, segment_id, stamp_ns"),
         (
             text('{"kind": "start", "segment": "a"}'),
             "'segment' is not a field of a message that marks an action: use one or more of kind, segment_id",

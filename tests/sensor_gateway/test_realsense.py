@@ -183,7 +183,7 @@ def test_without_a_camera_the_source_says_so_at_once_and_later_tries_again() -> 
     [skeleton] = first
     assert isinstance(skeleton, Skeleton)
     assert not skeleton.valid
-    assert skeleton.reason == source.counters.state == "camera lost: no RealSense camera is connected"
+    assert skeleton.reason == source.counters.state == "camera lost: no RealSense camera is connected: plug one in"
     assert len(opened) >= 3
     assert opened[2] - opened[1] > opened[1] - opened[0] > 0
 

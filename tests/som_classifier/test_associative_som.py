@@ -64,5 +64,5 @@ def test_readings_are_those_of_the_activities_in_between() -> None:
 
 @pytest.mark.parametrize("changes", [np.zeros((2, 3, 4)), np.zeros((3, 4)), np.full((2, 3, 3), np.nan)])
 def test_other_weights_are_refused(changes: Floats) -> None:
-    with pytest.raises(ValueError, match=r"expected finite numbers of shape \(2, units, units\)"):
+    with pytest.raises(ValueError, match=r"give finite numbers of the shape \(2, units, units\)"):
         AssociativeSom(changes.astype(np.float16))

@@ -292,7 +292,7 @@ def test_a_model_that_another_version_made_otherwise_names_that_version(
     tmp_path: Path, kind: str, change: dict[str, object], detail: str
 ) -> None:
     told = refused(with_metadata(saved(tmp_path, kind), actum_version="0.0.9", **change))
-    assert f"actum 0.0.9 made the model, and actum {__version__} cannot use it ({detail}" in told
+    assert f"actum 0.0.9 made the model, and actum {__version__} cannot use this model ({detail}" in told
     assert "train a new model from the same recordings with 'actum train" in told
     assert "damaged" not in told
 

@@ -40,7 +40,7 @@ def test_random_weights_are_positive_and_of_unit_length() -> None:
 
 @pytest.mark.parametrize("weights", [np.ones(3), np.ones((2, 3)), np.zeros((2, 3)), np.full((2, 3), np.nan)])
 def test_weights_that_are_no_unit_vectors_are_refused(weights: np.ndarray) -> None:
-    with pytest.raises(ValueError, match="each row is a unit vector"):
+    with pytest.raises(ValueError, match="not a matrix of unit vectors"):
         SupervisedLayer(weights)
 
 

@@ -152,7 +152,7 @@ def test_up_refuses_a_zenoh_configuration_that_cannot_be_used(running: System, m
     monkeypatch.setenv("ACTUM_ZENOH_CONFIG", "/nowhere.json5")
     refused = running.actum("up")
     assert refused.returncode == 1
-    assert "actum: zenoh-config: /nowhere.json5 is not a Zenoh configuration" in refused.stderr
+    assert "actum: zenoh-config: /nowhere.json5 is not a valid Zenoh configuration" in refused.stderr
     assert "Traceback" not in refused.stderr
     assert pids_of(running) == set()
 

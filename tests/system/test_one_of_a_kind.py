@@ -68,7 +68,8 @@ def test_the_second_of_a_kind_says_so_and_ends(running: System, service: str, pr
         assert code_of(second) == TAKEN
         [complaint] = [line for line in second.said().splitlines() if "another" in line]
         assert re.search(
-            rf"another {service} already runs for sensor kinect0: one on \S+\. .*Stop the other.*--take-over", complaint
+            rf"another {service} already runs for sensor kinect0 \(one on \S+\), .*Stop the other.*--take-over",
+            complaint,
         )
         wait_for_tokens(client, f"{service}/one")
     assert first.process.poll() is None
@@ -180,5 +181,5 @@ def test_a_camera_for_the_markers_lives_beside_the_sensors_gateway(running: Syst
         wait_for_tokens(client, "marker_camera/one", "sensor_gateway/one")
         third = start(running, "two", *marker_camera(tmp_path), service="sensor_gateway")
         assert code_of(third) == TAKEN
-        assert "another marker_camera already runs for sensor kinect0: one on" in third.said()
+        assert "another marker_camera already runs for sensor kinect0 (one on" in third.said()
     assert [it.process.poll() for it in (gateway, beside)] == [None, None]

@@ -146,9 +146,9 @@ def test_tokens_go_with_their_process(running: System) -> None:
         (["pose_preprocessor", "--sensor", "Kinect 0"], "sensor: "),
         (["pose_preprocessor", "--connect", "127.0.0.1:7551"], "'127.0.0.1:7551' is not an endpoint: use tcp/"),
         (["scene_simulator", "--connect", "foo"], "'foo' is not an endpoint: use tcp/host:port"),
-        (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is not a Zenoh configuration"),
+        (["action_fusion", "--zenoh-config", "/nowhere.json5"], "/nowhere.json5 is not a valid Zenoh configuration"),
         (["action_fusion", "--state", __file__], f"state: the folder {__file__} cannot be created"),
-        (["action_fusion", "--zenoh-config", __file__], f"{__file__} is not a Zenoh configuration"),
+        (["action_fusion", "--zenoh-config", __file__], f"{__file__} is not a valid Zenoh configuration"),
     ],
 )
 def test_settings_that_cannot_be_used_end_with_one_line(running: System, arguments: list[str], complaint: str) -> None:

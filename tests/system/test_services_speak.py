@@ -51,7 +51,8 @@ def test_a_model_that_is_not_there_is_named(running: System, scene_model: Path, 
     running.start_router()
     with running.client() as client:
         running.wait_for_services(client, "som_classifier")
-        assert f"som_classifier: no model: there is no {model} yet, so every action is rejected" in diagnosed(running)
+        lacking = f"som_classifier has the state 'no model: there is no {model} yet' and therefore recognises no action"
+        assert lacking in diagnosed(running)
         model.write_bytes(b"not yet whole")
         wait_for_line(classifier, f"no model: {model}: the file is not a model of actum")
         (tmp_path / "whole.npz").write_bytes(scene_model.read_bytes())
@@ -70,9 +71,10 @@ def test_a_camera_file_that_is_not_there_is_named_and_that_it_came(running: Syst
     running.start_router()
     missing = tmp_path / "none.avi"
     gateway = running.start("sensor_gateway", *marker_camera(tmp_path, missing))
-    lost = f"camera lost: it cannot be opened (file {missing} (marker camera))"
+    state, source = "camera lost: it cannot be opened", f"(file {missing} (marker camera))"
+    lost = f"{state} {source}"
     wait_for_line(gateway, lost)
-    assert f"marker_camera: {lost}; marker_camera keeps trying to open the camera again" in diagnosed(running)
+    assert f"marker_camera has the state '{state}' {source} and keeps trying to open the camera" in diagnosed(running)
     write_video(tmp_path / "arriving.avi").rename(missing)
     wait_for_line(gateway, "running again")
     wait_for_line(gateway, lost)
@@ -95,9 +97,13 @@ def test_a_router_that_is_lost_and_comes_back_is_told(running: System) -> None:
 def test_the_end_of_a_recording_is_told_with_its_name(running: System, tmp_path: Path) -> None:
     running.start_router()
     gateway = running.start("sensor_gateway", *recording(tmp_path / "a.mcap", *reaches(3)))
-    ended = f"source ended (file {tmp_path / 'a.mcap'} (recording))"
+    source = f"(file {tmp_path / 'a.mcap'} (recording))"
+    ended = f"source ended {source}"
     wait_for_line(gateway, ended)
-    assert f"sensor_gateway: {ended}; restart sensor_gateway to play the source once more" in diagnosed(running)
+    problem = (
+        f"sensor_gateway has the state 'source ended' {source}: restart sensor_gateway to play the source once more"
+    )
+    assert problem in diagnosed(running)
     assert STATUS_S > 1.0, "doctor heard two reports meanwhile"
     wait_for_line(gateway, ended)
 

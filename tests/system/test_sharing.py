@@ -85,7 +85,7 @@ def test_each_segment_has_one_answer_as_alone_though_its_process_is_killed(runni
         wait_until(lambda: all(serving(c) == server_of(c.sensor, NAMES) for c in clients), "each serves its share")
         assert {serving(client) for client in clients} == set(NAMES)
         assert (
-            f"serving this sensor: {serving(clients[0])}; standing by: "
+            f"{serving(clients[0])} serves the sensor; standing by: "
             in running.actum("doctor", "--sensor", SENSORS[0]).stdout
         )
         actions: list[tuple[Listening, list[Action]]] = [

@@ -167,7 +167,7 @@ def test_a_wrong_password(running: System, authority: Authority) -> None:
     login = {"user": "viewer", "password": "wrong"}
     (viewer / "user.json5").write_text(json.dumps({"transport": {"auth": {"usrpwd": login}}}))
     refused = said(running, started(running, router), viewer)
-    assert "Either the router rejects the login of user viewer: copy" in refused
+    assert "If the router rejects the login of user viewer, copy" in refused
     assert "wrong" not in refused
 
 

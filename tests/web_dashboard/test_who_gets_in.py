@@ -103,7 +103,9 @@ def test_a_page_for_others_has_the_names_that_are_listed_and_no_other(guarded: S
 
 
 def test_others_are_not_let_in_without_a_token() -> None:
-    with pytest.raises(ValidationError, match="lets other machines open the page: set page-token"):
+    with pytest.raises(
+        ValidationError, match="lets other machines open the page, which therefore needs a token: set page-token"
+    ):
         Settings(page_host="0.0.0.0")
     with pytest.raises(ValidationError, match="at least 16 characters"):
         Settings(page_host="0.0.0.0", page_token="short")

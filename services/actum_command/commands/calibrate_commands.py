@@ -81,7 +81,7 @@ def intrinsics(
     file, the command writes a picture that shows in which parts of the image the board was seen.
     """
     if live == bool(images):
-        fail("give either pictures of the board or --live, not both; --live takes the pictures now")
+        fail("give either pictures of the board or --live, not both; --live takes new pictures")
     files = [file for path in images or [] for file in (pictures_in(path) if path.is_dir() else [path])]
     picture = _coverage_picture_of(output, files)
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))

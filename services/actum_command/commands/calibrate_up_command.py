@@ -48,8 +48,8 @@ def up(
             say(f"  {instruction}")
     if (tilt := estimator.up) is None:
         fail(
-            "nobody stood upright and still for two seconds: try again, and follow the instructions. The last "
-            f"instruction was: {estimator.instruction}"
+            "nobody stood upright and still for two seconds: try again, and follow the instructions. The last one was "
+            f"'{estimator.instruction}'"
         )
     say(
         f"the camera looks {_signed(tilt.pitch_deg, 'up', 'down')} and is turned "

@@ -195,7 +195,10 @@ def rotate(
         with alone(folder):
             deployment = Deployment.load(folder).revoking(revoke or [])
             if not deployment.secured:
-                fail(f"the deployment in {folder} was made with --open, so it has no credentials to renew")
+                fail(
+                    f"the deployment in {folder} was made with --open, so it has no credentials to renew: to get "
+                    "credentials, run 'actum deploy init' without --open"
+                )
             write_deployment(deployment, folder, days, may_be_new=False)
     names = ", ".join(host.name for host in deployment.hosts)
     say(f"copy credentials/ and router.json5 of {names}, and the folders of people/, to their machines again")

@@ -191,7 +191,10 @@ def _evaluate_continuously(
 def _refuse_with_intent(context: typer.Context, given: Given) -> None:
     """Fail where an option is given that has to do with models of actions, of which intents need none."""
     if flags := [*flags_given(context, OF_MODELS), *map(flag_of, given)]:
-        fail(f"--intent uses no model of actions: leave out {' and '.join(flags)}")
+        fail(
+            f"--intent does not use a model of actions, so {' and '.join(flags)} would have no effect: leave out "
+            f"{' and '.join(flags)}"
+        )
 
 
 def _evaluate_intents(recordings: Sequence[Recording], json_file: Path | None) -> None:

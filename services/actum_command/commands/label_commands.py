@@ -234,8 +234,8 @@ def _found(file: Path, name: str) -> tuple[Take, MarkedSegment]:
         fail(f"there is no segment {name!r} in {file}: {hint}")
     if name not in named and len(named) > 1:
         fail(
-            f"{len(named)} segments have the id {name!r}: give the number of one of these segments instead, "
-            f"{' or '.join(named)}"
+            f"{len(named)} segments have the id {name!r}: give the number of the segment ({' or '.join(named)}) "
+            "instead of this id"
         )
     return take, chosen_one
 
@@ -270,4 +270,4 @@ def _in_ns(seconds: float | str, shown: str, advice: str) -> int:
 def _refuse_length(label: str) -> None:
     """Fail where a label is empty, or too long for a mark."""
     if not 0 < len(label) <= LONGEST_LABEL:
-        fail(f"the label must have 1 to {LONGEST_LABEL} characters")
+        fail(f"the label has {len(label)} characters: use 1 to {LONGEST_LABEL} characters")

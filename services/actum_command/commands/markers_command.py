@@ -62,7 +62,10 @@ def _numbers(text: str) -> list[int]:
                 f"--ids contains {part!r}, which is neither a number nor a range: write ids such as 1,2,3 or 0-9"
             ) from None
         if not span:
-            raise PatternError(f"--ids contains the range {part!r}: write its smaller number first, such as 0-9")
+            raise PatternError(
+                f"--ids contains the range {part!r}, which begins with the larger number: begin with the smaller "
+                "number, as in 0-9"
+            )
         if len(numbers) + len(span) > MOST_IDS:
             raise PatternError(f"--ids names more than {MOST_IDS} markers: name at most {MOST_IDS}")
         numbers += span

@@ -41,7 +41,9 @@ class PlainCommand(_Plain, TyperCommand):
         for param in self.params:
             value = ctx.params.get(param.name)
             if isinstance(value, float) and not math.isfinite(value):
-                raise typer.BadParameter(f"{value} is not a finite number.", ctx, param_hint=f"'{param.opts[-1]}'")
+                raise typer.BadParameter(
+                    f"{value} is not a finite number: give a finite number.", ctx, param_hint=f"'{param.opts[-1]}'"
+                )
         return left
 
 

@@ -123,13 +123,15 @@ def fetch(published: Published, path: Path, progress: Callable[[int], None]) -> 
 
 def _chunks(url: str) -> Iterator[bytes]:
     if not url.startswith(("http://", "https://")):
-        raise FetchError(f"{url} does not begin with http:// or https://: use such an address")
+        raise FetchError(f"{url} does not begin with http:// or https://: use an address that does")
     try:
         with urllib.request.urlopen(url, timeout=TIMEOUT_S) as answer:
             while chunk := answer.read(CHUNK_BYTES):
                 yield chunk
     except urllib.error.HTTPError as error:
-        raise FetchError(f"{url}: the server answers {error.code} {error.reason}; try again later") from None
+        raise FetchError(
+            f"{url} cannot be downloaded, because the server answers {error.code} {error.reason}: try again later"
+        ) from None
     except (OSError, HTTPException, ValueError) as error:
         reason = getattr(error, "reason", None) or error
         raise FetchError(f"{url} cannot be reached ({reason}): check the network and the proxy") from None

@@ -16,7 +16,7 @@ GATEWAY, BRIDGE = "sensor_gateway", "ros2_bridge"
 EXPECTED = (GATEWAY, *SERVICES)
 """The services of a whole system whose skeletons do not come from ROS 2."""
 
-ROLE = "set ACTUM_CREDENTIALS to the credentials folder of a role that may read messages, such as viewer"
+ROLE = "set ACTUM_CREDENTIALS to the credentials folder of a role that is allowed to read messages, such as viewer"
 """What to do where access control keeps a program from reading."""
 
 TOLD_S = 0.1
@@ -64,7 +64,10 @@ def who_serves(heard: Heard) -> Iterator[str]:
         serving = heard.tokens.get(service, [])
         others = sorted(set(members) - set(serving))
         standing_by = f"; standing by: {', '.join(others)}" if others else ""
-        yield f"several processes share {service}; serving this sensor: {', '.join(serving) or 'none yet'}{standing_by}"
+        yield (
+            f"several processes run {service} for this sensor, as intended: {', '.join(serving) or 'none of them yet'} "
+            f"serves the sensor{standing_by}"
+        )
 
 
 def everything_denied(heard: Heard, client: Client) -> str | None:
@@ -93,8 +96,8 @@ def partly_denied(heard: Heard) -> Iterator[str]:
             yield f"services run, but the router's access control denies this program permission to read {what}: {ROLE}"
     if heard.tokens and not heard.statuses:
         yield (
-            "services run, but none of their status messages arrives. Either all services hang: restart the services. "
-            f"Or the router's access control denies this program permission to read status messages: {ROLE}"
+            "services run, but none of their status messages arrives. If all services hang, restart the services. If "
+            f"the router's access control denies this program permission to read status messages, {ROLE}"
         )
 
 

@@ -96,7 +96,7 @@ def _problems(name: str, instances: list[str], infos: list[Info], status: Status
     if len(instances) > 1 or len(infos) > 1:
         running = _who(infos, instances)
         yield (
-            f"more than one instance of {name} runs ({running}), so every action is answered more than once: stop all "
+            f"more than one instance of {name} runs ({running}), so every result is published more than once: stop all "
             "instances but one"
         )
     if status is None:
@@ -118,17 +118,20 @@ def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
     """Yield the problems that a service's own state names; `source` is the source that it reads, in brackets."""
     match State.of(status.state):
         case State.CAMERA_LOST:
-            yield f"{name}: {status.state}{source}; {name} keeps trying to open the camera again"
+            yield f"{name} has the state '{status.state}'{source} and keeps trying to open the camera"
         case State.SOURCE_ENDED:
             endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
             yield (
-                f"{name}: {status.state}{source}; restart {name} to play the source once more, or restart it with "
-                f"{endless} to repeat the source without end"
+                f"{name} has the state '{status.state}'{source}: restart {name} to play the source once more, or "
+                f"restart {name} with {endless} to repeat the source without end"
             )
         case State.NO_MODEL:
-            yield f"{name}: {status.state}, so every action is rejected; set --model or ACTUM_MODEL to a model file"
+            yield (
+                f"{name} has the state '{status.state}' and therefore recognises no action: set --model or ACTUM_MODEL "
+                "to a model file"
+            )
         case State.MODEL_NOT_RENEWED:
-            yield f"{name}: {status.state}; the previous model stays in use"
+            yield f"{name} has the state '{status.state}' and still uses the previous model: correct the model file"
         case State.NOTHING_TO_DO | State.UNKNOWN_ACTIONS:
             yield f"{name}: {status.state}"
 

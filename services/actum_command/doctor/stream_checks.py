@@ -45,8 +45,8 @@ def hops(heard: Heard) -> Iterator[str]:
     where = "in the last minute, measured by web_dashboard" if reported else "measured where doctor runs"
     for hop in reported[0] if reported else heard.hops:
         yield (
-            f"{hop.cause} → {hop.effect}: p50 {hop.p50_ms:.1f} ms, p99 {hop.p99_ms:.1f} ms ({hop.count} messages "
-            f"{where})"
+            f"latency from {hop.cause} to {hop.effect}: p50 {hop.p50_ms:.1f} ms, p99 {hop.p99_ms:.1f} ms ({hop.count} "
+            f"messages {where})"
         )
 
 
@@ -76,8 +76,8 @@ def _slow_source(infos: Sequence[Info], put_hz: float, skeletons: Watched) -> It
         if info.service == SENSOR and info.rate_hz and 0 < put_hz < SLOW * info.rate_hz:
             yield (
                 f"{SENSOR} publishes {put_hz:.0f} frames per second, but its source is set to {info.rate_hz:g} frames "
-                "per second: the machine may be busy, the room too dark for short exposures, or the camera's cable too "
-                "slow"
+                "per second. Possible causes: a busy machine, a room that is too dark for short exposures, or a slow "
+                "camera cable"
             )
     if 0 < skeletons.rate_hz < SLOW * skeletons.stamped_hz:
         yield (
@@ -117,7 +117,8 @@ def _readers(statuses: Statuses, put_hz: Mapping[Topic, float]) -> Iterator[str]
             if got_hz == 0:
                 yield (
                     f"{service} receives none of the {all_hz:.0f} messages per second on the topic {name}: check that "
-                    f"the role of {service} may read this topic, and that all routers are connected to each other"
+                    f"the role of {service} is allowed to read this topic, and that all routers are connected to each "
+                    "other"
                 )
             elif got_hz < SLOW * all_hz and topic is not keys.COLOR:
                 yield (

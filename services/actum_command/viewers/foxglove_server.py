@@ -71,7 +71,7 @@ class Client:
             with self._lock:
                 if len({*self._channels, *wanted}) > MOST_SUBSCRIPTIONS:
                     raise ValueError(
-                        f"the viewer requests more than {MOST_SUBSCRIPTIONS} topics: close some of its panels"
+                        f"the viewer requests more than {MOST_SUBSCRIPTIONS} topics: close some panels of the viewer"
                     )
                 self._channels.update(wanted)
             return True
@@ -188,5 +188,5 @@ def _number(value: object) -> int:
         ValueError: it is none.
     """
     if not isinstance(value, int) or not 0 <= value < 2**32:
-        raise ValueError(f"{value!r} is not a whole number from 0 to 4294967295")
+        raise ValueError(f"{value!r} is not a whole number from 0 to 4294967295: use a whole number in this range")
     return value

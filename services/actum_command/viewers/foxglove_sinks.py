@@ -108,8 +108,8 @@ def served(
         yield stream, serving.address.replace("http://", "ws://").rstrip("/")
     if server.left_out:
         log.warning(
-            "%d messages were dropped, because Foxglove clients were too slow to receive them: close some of their "
-            "panels, or use a faster network",
+            "%d messages were dropped, because Foxglove clients were too slow to receive them: close some panels in "
+            "these clients, or use a faster network",
             server.left_out,
         )
 

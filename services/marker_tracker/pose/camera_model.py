@@ -70,7 +70,9 @@ def _checked(
         )
     if not np.array_equal(matrix[2], (0, 0, 1)):
         raise UnusableImageError(
-            "bad_calibration", f"the last row of the camera matrix K is {matrix[2].tolist()}; it must be [0, 0, 1]"
+            "bad_calibration",
+            f"the last row of the camera matrix K is {matrix[2].tolist()}, but must be [0, 0, 1]: calibrate the camera "
+            "again",
         )
     skeleton_from_image = geometry.from_flat(transform)
     if not geometry.is_rigid(skeleton_from_image, MAX_COORDINATE_M):
@@ -117,12 +119,13 @@ def _distortion(coefficients: tuple[float, ...]) -> Array:
         allowed = " or ".join(map(str, DISTORTION_LENGTHS))
         raise UnusableImageError(
             "bad_calibration",
-            f"distortion has {len(coefficients)} coefficients; expected {allowed} coefficients",
+            f"distortion has {len(coefficients)} coefficients, but must have {allowed}: calibrate the camera again",
         )
     distortion = np.array(coefficients, dtype=np.float64)
     if np.abs(distortion).max(initial=0) > LARGEST_COEFFICIENT:
         raise UnusableImageError(
             "bad_calibration",
-            f"a distortion coefficient is outside of ±{LARGEST_COEFFICIENT:g}: calibrate the camera again",
+            f"a distortion coefficient is below -{LARGEST_COEFFICIENT:g} or above {LARGEST_COEFFICIENT:g}: calibrate "
+            "the camera again",
         )
     return distortion

@@ -119,7 +119,8 @@ def solve(markers: Sequence[tuple[Marker, MountedMarker]], camera: CameraModel) 
     usable = sorted((pose for pose in poses if _is_usable(pose)), key=lambda pose: pose.error_px)
     if not usable:
         raise BadPoseError(
-            f"no position in front of the camera fits the corners of marker {markers[0][0].id}: keep the marker flat"
+            f"no position of marker {markers[0][0].id} in front of the camera fits the corners that the image shows: "
+            "keep the marker flat"
         )
     best = usable[0]
     possible = (pose for pose in usable[1:] if _is_possible(pose.error_px, best.error_px))

@@ -66,12 +66,12 @@ class BodyReader:
 
     def receive(self, foreign: Foreign) -> Iterable[Skeleton]:
         """Take one payload, and return the skeletons that are complete by it."""
-        topic = self._by_name[foreign.topic]
+        topic, size = self._by_name[foreign.topic], len(foreign.payload)
+        if size > MOST_BYTES:
+            detail = f"a message on {topic.name} has {size} bytes; at most {MOST_BYTES} bytes are allowed"
+            self._counters.reject("bad_body_message", detail)
+            return []
         try:
-            if len(foreign.payload) > MOST_BYTES:
-                raise NotThatTypeError(
-                    f"the payload has {len(foreign.payload)} bytes; at most {MOST_BYTES} are allowed"
-                )
             message = from_cdr(foreign.payload, topic.type)
         except NotThatTypeError as error:
             self._counters.reject("bad_body_message", f"a message on {topic.name} is not a valid {topic.type}: {error}")
@@ -160,7 +160,7 @@ class BodyReader:
         try:
             self._assembler.describe(body_id, links_of(message.data, body_id))
         except BadDescriptionError as error:
-            self._counters.reject("bad_body_description", f"the URDF of the body {body_id} is not used: {error}")
+            self._counters.reject("bad_body_description", f"body {body_id}: {error}")
         return []
 
     def _stamp_ns(self, header: Any) -> int | None:

@@ -28,7 +28,7 @@ the way through joint angles, and 199 instead of 198 of UTKinect's 199; each per
 
 
 class BadDescriptionError(ValueError):
-    """An URDF that describes no body; the text says why."""
+    """A URDF that describes no body; the text says why, and what to do."""
 
 
 def links_of(urdf: str, body_id: str) -> tuple[Link, ...]:
@@ -38,20 +38,25 @@ def links_of(urdf: str, body_id: str) -> tuple[Link, ...]:
         BadDescriptionError: it is no URDF, or not one of this body.
     """
     if "<!DOCTYPE" in urdf:
-        raise BadDescriptionError("it contains a document type, which an URDF does not need")
+        raise BadDescriptionError(
+            "the URDF contains a document type declaration (<!DOCTYPE …>): remove this declaration"
+        )
     try:
         joints = fromstring(urdf).findall("joint")
     except (ParseError, ValueError) as error:
-        raise BadDescriptionError(f"it is no XML: {error}") from None
+        raise BadDescriptionError(f"the URDF is not valid XML ({error}): correct the XML") from None
     if len(joints) > MOST_LINKS:
-        raise BadDescriptionError(f"it has {len(joints)} joints; at most {MOST_LINKS} are allowed")
+        raise BadDescriptionError(f"the URDF has {len(joints)} joints: use at most {MOST_LINKS} joints")
     below: defaultdict[str, list[Link]] = defaultdict(list)
     for joint in joints:
         link = _link(joint, f"_{body_id}")
         below[link.parent].append(_as_measured(link))
     links = tuple(_ordered(BODY, below))
     if not links:
-        raise BadDescriptionError(f"it has no link below body_{body_id}")
+        raise BadDescriptionError(
+            f"no joint of the URDF has the parent link body_{body_id}: name the links as in human_description, with "
+            "this body's id at the end"
+        )
     return links
 
 
@@ -79,7 +84,7 @@ def _ordered(parent: str, below: Mapping[str, list[Link]]) -> Iterator[Link]:
     while waiting:
         for link in below.get(waiting.pop(), ()):
             if link.name in found:
-                raise BadDescriptionError(f"the link {link.name} hangs on two joints")
+                raise BadDescriptionError(f"the URDF gives the link {link.name} two parents: give each link one parent")
             found.add(link.name)
             waiting.append(link.name)
             yield link
@@ -91,7 +96,9 @@ def _link(joint: Element, suffix: str) -> Link:
     joint_type = joint.get("type", "")
     axis = _numbers(joint, "axis", "xyz", "1 0 0", 1.0 + UNIT_TOLERANCE) if joint_type in MOVING else (0.0, 0.0, 0.0)
     if joint_type in MOVING and abs(math.hypot(*axis) - 1) > UNIT_TOLERANCE:
-        raise BadDescriptionError(f"the axis {axis} of the joint above {name} has not the length 1")
+        raise BadDescriptionError(
+            f"in the URDF, the joint with the child link {name} has the axis {axis}: use an axis of length 1"
+        )
     return Link(
         name,
         parent,
@@ -119,11 +126,16 @@ def _numbers(joint: Element, element: str, attribute: str, otherwise: str, large
     Raises:
         BadDescriptionError: they are not three, or one is larger than `largest`.
     """
-    text = _of(joint, element, attribute, otherwise)
+    text, name = _of(joint, element, attribute, otherwise), joint.get("name")
     try:
         x, y, z = (float(each) for each in text.split())
     except ValueError:
-        raise BadDescriptionError(f"{attribute}={text!r} of a joint's {element} is not three numbers") from None
+        raise BadDescriptionError(
+            f"in the URDF, the joint {name} has <{element} {attribute}={text!r}>: write three numbers"
+        ) from None
     if not all(abs(each) <= largest for each in (x, y, z)):
-        raise BadDescriptionError(f"{attribute}={text!r} of a joint's {element} is larger than {largest:g}")
+        raise BadDescriptionError(
+            f"in the URDF, the joint {name} has <{element} {attribute}={text!r}>: use numbers from -{largest:g} to "
+            f"{largest:g}"
+        )
     return x, y, z

@@ -69,13 +69,13 @@ class Camera:
         skeleton_from_image = geometry.from_flat(image.skeleton_from_image)
         if not (0 < image.K[0] < MOST_PX and 0 < image.K[4] < MOST_PX):
             raise UnusableCameraError(
-                f"the focal lengths in the camera matrix K {image.K} have to be above 0 and below {MOST_PX:g} px: "
+                f"the focal lengths in the camera matrix K {image.K} must be above 0 and below {MOST_PX:g} px: "
                 "calibrate the camera with 'actum calibrate intrinsics'"
             )
         if not geometry.is_rigid(skeleton_from_image, FURTHEST_M):
             raise UnusableCameraError(
-                f"skeleton_from_image {image.skeleton_from_image} is not a rotation and a shift of at most "
-                f"{FURTHEST_M:g} m"
+                f"skeleton_from_image must be a rotation with a shift of at most {FURTHEST_M:g} m, but is "
+                f"{image.skeleton_from_image}: run 'actum calibrate extrinsics' again"
             )
         given = np.array(image.distortion[:MOST_COEFFICIENTS], dtype=np.float64)
         return cls(

@@ -71,9 +71,7 @@ def _role(text: str) -> str:
     try:
         named = [name for _, name, *_ in Formatter().parse(text) if name is not None]
     except ValueError as error:
-        raise ValueError(
-            f"{text!r} cannot be used ({error}): to write a brace as text, double the brace: {{{{"
-        ) from None
+        raise ValueError(f"{text!r} cannot be used ({error}): write each brace of the text twice, as in {{{{") from None
     for name in named:
         if name not in PLACEHOLDERS:
             raise ValueError(
@@ -135,9 +133,13 @@ def load(path: Path | None) -> Mapping:
         with path.open(encoding="utf-8") as file:
             content = yaml.safe_load(file.read(LARGEST_BYTES))
     except (OSError, UnicodeDecodeError) as error:
-        raise MappingError(f"ros_hri_mapping: {path} cannot be read as text: {error}") from None
+        raise MappingError(
+            f"ros_hri_mapping: {path} cannot be read as text ({error}): give a text file in UTF-8"
+        ) from None
     except YAML_ERRORS as error:
-        raise MappingError(f"ros_hri_mapping: {path} is not YAML: {' '.join(str(error).split())}") from None
+        raise MappingError(
+            f"ros_hri_mapping: {path} is not YAML ({' '.join(str(error).split())}): correct this file"
+        ) from None
     try:
         return Mapping.model_validate(content)
     except ValidationError as error:

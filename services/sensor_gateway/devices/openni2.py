@@ -67,7 +67,7 @@ class OpenNi2Capture:
 
     def _opened(self) -> Streams:
         if not self._openni2.Device.enumerate_uris():
-            raise CameraLostError("no camera that OpenNI 2 supports is connected")
+            raise CameraLostError("no camera that OpenNI 2 supports is connected: plug one in")
         device = self._openni2.Device(None)
         return Streams(self._openni2, device, self._size, self._field_of_view_deg)
 
@@ -106,8 +106,8 @@ def _opened_file(openni2: Any, path: Path) -> Any:
     if device.playback is None:
         device.close()
         raise CameraLostError(
-            "OpenNI cannot play the file, because another driver in OpenNI's driver folder took the file for a camera: "
-            "remove that driver"
+            "OpenNI cannot play the file, because another driver in OpenNI's driver folder treats the file as a "
+            "camera: remove that driver from the folder"
         )
     device.playback.set_repeat_enabled(False)
     device.playback.set_speed(MANUAL)

@@ -90,7 +90,7 @@ class Streams:
             pixels = rows[:, : 3 * frame.width].reshape(frame.height, frame.width, 3)
         else:
             raise CameraLostError(
-                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}; actum reads only "
+                f"the camera sends colour images in the format {stream.video_mode.pixelFormat!r}, but actum reads only "
                 "RGB888: use another driver"
             )
         frames.append((frame.timestamp, (pixels[:, ::-1] if stream in self._mirrored else pixels).copy()))
@@ -132,8 +132,8 @@ class Streams:
             self.device.set_depth_color_sync_enabled(True)
         else:
             log.warning(
-                "the camera driver does not align depth images with colour images, so the joints of thin limbs may be "
-                "placed as far away as the background"
+                "the camera driver does not align depth images with colour images, so joints of thin limbs may appear "
+                "as far away as the background: use a driver with depth-to-colour registration"
             )
 
     def _is(self, stream: Any, pixel_format: Any) -> bool:

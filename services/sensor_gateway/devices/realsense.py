@@ -52,8 +52,8 @@ def library() -> Any:
         import pyrealsense2
     except ImportError as error:
         raise RealSenseError(
-            f"the source realsense needs pyrealsense2 ({error}): run {install_command('realsense')}; on Debian also "
-            "run: apt install libusb-1.0-0"
+            f"the source realsense needs pyrealsense2 ({error}): run {install_command('realsense')}, and on Debian "
+            "also 'apt install libusb-1.0-0'"
         ) from None
     return pyrealsense2
 
@@ -89,7 +89,9 @@ class RealSenseCapture:
                     device.get_info(self._rs.camera_info.serial_number) for device in self._context.query_devices()
                 ]
                 if self._serial not in numbers:
-                    raise CameraLostError(f"the RealSense camera with serial number {self._serial} was unplugged")
+                    raise CameraLostError(
+                        f"the RealSense camera with serial number {self._serial} was unplugged: plug it in again"
+                    )
             picture = self._aligner.picture(frames, self._stamp_ns) if has_frames else None
         except RuntimeError as error:
             raise CameraLostError(f"librealsense says: {error}") from None
@@ -111,7 +113,7 @@ class RealSenseCapture:
     def _started(self) -> Any:
         self._context = self._rs.context()
         if not len(self._context.query_devices()):
-            raise CameraLostError("no RealSense camera is connected")
+            raise CameraLostError("no RealSense camera is connected: plug one in")
         pipeline = self._rs.pipeline(self._context)
         profile = pipeline.start(self._config(pipeline))
         self._serial = profile.get_device().get_info(self._rs.camera_info.serial_number)

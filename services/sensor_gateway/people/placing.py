@@ -87,7 +87,10 @@ def posed(landmarks: Landmarks, rays: Array, scale: float = 1.0) -> Array:
     translation = np.linalg.lstsq(weighted[0].reshape(-1, 3), weighted[1].reshape(-1), rcond=None)[0]
     points_m: Array = rotated + translation
     if not (points_m[:, 2].min() > NEAREST_M and np.isfinite(points_m).all()):
-        raise PlacingError("the body points found in the image fit no position of the person in front of the camera")
+        raise PlacingError(
+            "the body points found in the image fit no position of a person in front of the camera, so this detection "
+            "is not used"
+        )
     return points_m
 
 
@@ -101,7 +104,8 @@ def flat(landmarks: Landmarks, rays: Array) -> Array:
     trunk = np.linalg.norm(joints[INDEX["neck"]] - joints[[INDEX["left_hip"], INDEX["right_hip"]]].mean(axis=0))
     if not trunk > 0:
         raise PlacingError(
-            "the person's trunk has no length in the image, so the person's distance cannot be estimated"
+            "the neck and the hips lie at the same point of the image, so the person's distance cannot be estimated "
+            "and this detection is not used"
         )
     sight = np.average(rays, axis=0, weights=np.maximum(landmarks.visibility, LEAST_WEIGHT))
     return np.column_stack([(rays - sight) * TRUNK_M / trunk, np.zeros(len(rays))]) @ rotation_to_ray(sight)

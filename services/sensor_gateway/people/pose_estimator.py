@@ -182,7 +182,9 @@ class Landmarker:
         try:
             return vision.PoseLandmarker.create_from_options(options)
         except PermissionError:
-            raise PoseModelError(f"{model_path} cannot be read by this user: give the user read permission") from None
+            raise PoseModelError(
+                f"{model_path} cannot be read by the current user: give this user read permission"
+            ) from None
         except (FileNotFoundError, RuntimeError, ValueError) as error:  # "not found": a part within the file
             first = str(error).partition("\n")[0]
             raise PoseModelError(f"{model_path} is not a pose model ({first}): {FETCH}") from None

@@ -136,8 +136,8 @@ def _with_user(settings: ServiceSettings, user: str | None) -> str:
     name = login.get(f"{LOGIN}/user", user)
     cause = f"rejects the login of user {name}" if name else "requires a user name and a password"
     return (
-        f"TLS works, but the router opens no session. Either the router {cause}: copy this program's credentials "
-        "folder to this machine again. Or the router is frozen: restart the router"
+        f"TLS works, but the router opens no session. If the router {cause}, copy this program's credentials folder to "
+        "this machine again. If the router is frozen, restart the router"
     )
 
 

@@ -68,8 +68,8 @@ class Alone:
         if now_s - self._unanswered_since_s < LOST_S:
             return False
         log.warning(
-            "this service cannot check whether another instance of it already runs: allow liveliness_query in the "
-            "router's access control"
+            "this service cannot check whether another instance of the same service already runs: allow "
+            "liveliness_query in the router's access control"
         )
         return True
 
@@ -207,13 +207,14 @@ class Place:
         sensor = self._settings.sensor
         if self._settings.take_over:
             return (
-                f"another {self._service} still runs for sensor {sensor}, although it was asked to stop: stop "
-                f"{holder.instance}{host}"
+                f"another {self._service} still runs for sensor {sensor} ({holder.instance}{host}) and did not stop on "
+                f"request: stop {holder.instance} yourself"
             )
         return (
-            f"another {self._service} already runs for sensor {sensor}: {holder.instance}{host}. Two instances would "
-            f"answer everything twice, so this instance ({self._settings.instance}) ends. Stop the other instance, "
-            "replace it with --take-over (ACTUM_TAKE_OVER=1), or name another sensor with --sensor"
+            f"another {self._service} already runs for sensor {sensor} ({holder.instance}{host}), and two instances "
+            f"would publish every result twice. Therefore this instance ({self._settings.instance}) ends. Stop the "
+            "other instance, replace it by starting this instance with --take-over (ACTUM_TAKE_OVER=1), or name "
+            "another sensor with --sensor"
         )
 
     def _declare(self, key: str) -> None:

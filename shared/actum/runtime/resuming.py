@@ -184,9 +184,9 @@ class Resumption:
         self._counters.reject("unwritable_state", reason)
         if self._writes:
             log.warning(
-                "the file with the service's answers (actions or events) cannot be used: %s. After a restart the "
-                "service may therefore answer the same segments differently: check that the file is readable and "
-                "writable, and that the disk is not full",
+                "the file of the service's published actions or events cannot be used (%s). After a restart, the "
+                "service may therefore publish different results for the same segments: check that the file is "
+                "readable and writable, and that the disk is not full",
                 reason,
             )
         self._writes = False

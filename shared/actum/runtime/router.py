@@ -94,7 +94,10 @@ def _opened(listen: str | None, config_file: Path | None, credentials: Path | No
             insert(config, login_values(credentials))
         return zenoh.open(config)
     except zenoh.ZError as error:
-        raise SettingsError(f"the router cannot start on {listen or config_file}: {reason_of(error)}") from None
+        raise SettingsError(
+            f"the router cannot start with {listen or config_file} ({reason_of(error)}): correct this address or "
+            "configuration file"
+        ) from None
 
 
 def _changed(

@@ -83,7 +83,8 @@ def client_config(settings: ServiceSettings) -> zenoh.Config:
         config = zenoh.Config.from_file(settings.zenoh_config) if settings.zenoh_config else zenoh.Config()
     except zenoh.ZError as error:
         raise SettingsError(
-            f"zenoh-config: {settings.zenoh_config} is not a Zenoh configuration: {reason_of(error)}"
+            f"zenoh-config: {settings.zenoh_config} is not a valid Zenoh configuration ({reason_of(error)}): correct "
+            "this file"
         ) from None
     insert(config, {**CLIENT, "connect/endpoints": [settings.connect]})
     if settings.credentials is not None:

@@ -51,8 +51,8 @@ class Codebook:
         fits = weights.ndim == 2 and weights.shape[0] == self.rows * self.cols and weights.shape[1] > 0
         if not fits or min(self.rows, self.cols) < 1 or not np.isfinite(weights).all():
             raise ValueError(
-                f"the weights have shape {weights.shape}; expected {self.rows * self.cols} rows of finite numbers, "
-                f"one row for each unit of the grid of {self.rows}×{self.cols}"
+                f"the weights have the shape {weights.shape}, but a grid of {self.rows}×{self.cols} units needs "
+                f"{self.rows * self.cols} rows of finite numbers, one row for each unit"
             )
         check_squarable(weights)
         weights.setflags(write=False)
@@ -71,7 +71,10 @@ class Codebook:
         """
         stacked = np.asarray(planes)
         if stacked.ndim != 3:
-            raise ValueError(f"the component planes have shape {stacked.shape}; expected (rows, cols, components)")
+            raise ValueError(
+                f"the component planes have the shape {stacked.shape}: give an array of the shape (rows, cols, "
+                "components)"
+            )
         rows, cols, dim = stacked.shape
         return cls(rows, cols, stacked.reshape(rows * cols, dim))
 
@@ -181,9 +184,7 @@ class Codebook:
             ValueError: there is no row, no second unit, or no such number of neighbours.
         """
         if neighbours not in _FARTHEST2:
-            raise ValueError(
-                f"the argument 'neighbours' is {neighbours}; allowed are {' and '.join(map(str, _FARTHEST2))}"
-            )
+            raise ValueError(f"the argument 'neighbours' is {neighbours}: use {' or '.join(map(str, _FARTHEST2))}")
         first, second = self.coordinates[self.best_two(some_rows(vectors)).T]
         return float((np.square(first - second).sum(axis=1) > _FARTHEST2[neighbours]).mean())
 

@@ -57,14 +57,14 @@ def training_vectors(vectors: ArrayLike, dim: int, dtype: np.dtype[np.floating])
     inputs = np.array(vectors, dtype=dtype, order="C")
     if inputs.ndim != 2 or inputs.shape[1] != dim or not len(inputs):
         raise ValueError(
-            f"cannot train on vectors of shape {inputs.shape}; expected (number of vectors, {dim}) with at least one "
-            "vector"
+            f"cannot train on vectors of the shape {inputs.shape}: give an array of the shape (number of vectors, "
+            f"{dim}), with at least one vector"
         )
     try:
         is_complete(inputs)
         check_squarable(inputs)
     except ValueError as error:
-        raise ValueError(f"cannot train on these vectors: {error}") from None
+        raise ValueError(f"cannot train on these vectors, because {error}") from None
     return inputs
 
 
@@ -84,5 +84,7 @@ def is_complete(vectors: Array) -> bool:
     empty = np.isnan(vectors).all(axis=1)
     if empty.any():
         row = np.flatnonzero(empty)[0]
-        raise ValueError(f"row {row} of the vectors contains only NaN: remove this row, or fill in at least one value")
+        raise ValueError(
+            f"row {row} of the vectors contains only NaN: remove this row, or replace at least one NaN by a number"
+        )
     return False

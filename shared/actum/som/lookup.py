@@ -51,7 +51,8 @@ class Lookup:
         """
         if x.shape != self._shape:
             raise ValueError(
-                f"the vector has shape {x.shape}; expected ({self.dim},), because the map has {self.dim} components"
+                f"the vector has the shape {x.shape}, but the map has {self.dim} components: give a vector of the "
+                f"shape ({self.dim},)"
             )
         centred = x - self.centre
         if centred.dtype != self.dtype:
@@ -70,7 +71,10 @@ class Lookup:
             ValueError: the rows have another length, an infinite component, or no known one.
         """
         if vectors.ndim != 2 or vectors.shape[1] != self.dim:
-            raise ValueError(f"the vectors have shape {vectors.shape}; expected (number of vectors, {self.dim})")
+            raise ValueError(
+                f"the vectors have the shape {vectors.shape}, but the map has {self.dim} components: give an array of "
+                f"the shape (number of vectors, {self.dim})"
+            )
         return self._known_scores(vectors) if is_complete(vectors) else self._partial_scores(vectors)
 
     def winners(self, vectors: Array) -> NDArray[np.intp]:

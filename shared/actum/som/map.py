@@ -123,7 +123,9 @@ def _linear_weights(vectors: NDArray[Any], rows: int, cols: int) -> Doubles:
     known = ~np.isnan(vectors)
     if not known.any(axis=0).all():
         component = np.flatnonzero(~known.any(axis=0))[0]
-        raise ValueError(f"component {component} is NaN in every vector: remove this component, or fill in values")
+        raise ValueError(
+            f"component {component} is NaN in every vector: remove this component, or replace the NaN values by numbers"
+        )
     mean = np.nanmean(vectors, axis=0, dtype=np.float64)
     axes = _principal_axes(np.where(known, vectors - mean, 0.0))
     return mean + 2 * matmul(_scaled(unit_coordinates(rows, cols)), axes if rows >= cols else axes[::-1])

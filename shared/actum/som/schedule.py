@@ -72,8 +72,8 @@ class Steps:
         alphas, radii = np.array(self.alphas, np.float64), np.array(self.radii, np.float64)
         if alphas.shape != (steps,) or radii.shape != (steps,):
             raise ValueError(
-                f"alphas have shape {alphas.shape} and radii {radii.shape}; expected ({steps},) for both, one value "
-                f"for each of the {steps} steps"
+                f"alphas have the shape {alphas.shape} and radii the shape {radii.shape}, but both need the shape "
+                f"({steps},): give one value for each of the {steps} steps"
             )
         return alphas, radii
 
@@ -90,7 +90,7 @@ def falling(first: float, last: float, steps: int) -> Array:
     """
     if not (0 < first < np.inf and 0 < last < np.inf):
         raise ValueError(
-            f"an exponential schedule from {first} to {last} is not possible: both values must be finite and above 0"
+            f"an exponential schedule from {first} to {last} is not possible: give two finite values above 0"
         )
     return np.geomspace(first, last, steps)
 
@@ -103,5 +103,7 @@ def checked_radii(radii: ArrayLike) -> Array:
     """
     values = np.array(radii, np.float64, ndmin=1)
     if not ((values > _SMALLEST_RADIUS) & (values < _LARGEST_RADIUS)).all():
-        raise ValueError(f"neighbourhood radii must be finite and above 0; got {values.min()} to {values.max()}")
+        raise ValueError(
+            f"the neighbourhood radii are from {values.min()} to {values.max()}: give finite radii above 0"
+        )
     return values

@@ -102,13 +102,13 @@ def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
     indices = np.array(order)
     if indices.ndim != 1 or (indices.size and not np.issubdtype(indices.dtype, np.integer)):
         raise ValueError(
-            f"the argument 'order' has type {indices.dtype} and shape {indices.shape}; expected one integer for each "
-            "step: the row number of the vector to learn from"
+            f"the argument 'order' has the type {indices.dtype} and the shape {indices.shape}: give one integer for "
+            "each step, the row number of the vector to learn from"
         )
     if indices.size and (indices.min() < 0 or indices.max() >= rows):
         raise ValueError(
-            f"the argument 'order' contains row numbers from {indices.min()} to {indices.max()}; expected row numbers "
-            f"from 0 to {rows - 1}, because there are {rows} vectors"
+            f"the argument 'order' contains row numbers from {indices.min()} to {indices.max()}, but there are only "
+            f"{rows} vectors: use row numbers from 0 to {rows - 1}"
         )
     return indices.astype(np.intp)
 
@@ -116,5 +116,7 @@ def _checked_order(order: ArrayLike, rows: int) -> NDArray[np.intp]:
 def _checked_alphas(alphas: ArrayLike) -> NDArray[np.float64]:
     values = np.array(alphas, np.float64)
     if not ((values >= 0) & (values <= 1)).all():
-        raise ValueError(f"adaptation strengths (alpha) must be from 0 to 1; got {values.min()} to {values.max()}")
+        raise ValueError(
+            f"the adaptation strengths (alpha) are from {values.min()} to {values.max()}: give strengths from 0 to 1"
+        )
     return values

@@ -121,10 +121,10 @@ def test_a_map_of_one_unit_has_no_second_best() -> None:
 def test_vectors_of_another_length_are_refused() -> None:
     som = Som.random(2, 2, 3, rng())
     for x in (np.zeros(2), np.zeros(1), np.zeros((1, 3))):
-        with pytest.raises(ValueError, match=r"expected \(3,\), because the map has 3"):
+        with pytest.raises(ValueError, match=r"the map has 3 components: give a vector of the shape \(3,\)"):
             som.bmu(x)
     for lookup in (som.bmus, som.best_two, som.excess2s):
-        with pytest.raises(ValueError, match=r"expected \(number of vectors, 3\)"):
+        with pytest.raises(ValueError, match=r"give an array of the shape \(number of vectors, 3\)"):
             lookup(np.zeros((5, 1)))
 
 

@@ -25,13 +25,13 @@ def test_diagonal_neighbours_are_neighbours_among_eight_not_among_four() -> None
 
 
 def test_neighbours_that_a_grid_does_not_have_are_refused() -> None:
-    with pytest.raises(ValueError, match="'neighbours' is 6; allowed are 8 and 4"):
+    with pytest.raises(ValueError, match="'neighbours' is 6: use 8 or 4"):
         Som(2, 2, np.zeros((4, 1))).topographic_error([[0.4]], 6)
 
 
 @pytest.mark.parametrize(("rows", "cols"), [(0, 3), (3, 0), (-1, -1)])
 def test_grids_that_make_no_sense_are_refused(rows: int, cols: int) -> None:
-    with pytest.raises(ValueError, match=f"for each unit of the grid of {rows}×{cols}"):
+    with pytest.raises(ValueError, match=f"a grid of {rows}×{cols} units needs"):
         Som(rows, cols, np.zeros((rows * cols, 1)))
     with pytest.raises(ValueError, match=f"a map of {rows}×{cols} units is empty"):
         Som.linear(rows, cols, [[1.0], [2.0]])

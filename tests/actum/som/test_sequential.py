@@ -72,12 +72,12 @@ def test_progress_is_reported_to_its_end() -> None:
 @pytest.mark.parametrize(
     ("order", "decay", "problem"),
     [
-        ([0, 2], Steps([0.1] * 2, [1.0] * 2), "row numbers from 0 to 2; expected row numbers from 0 to 1"),
+        ([0, 2], Steps([0.1] * 2, [1.0] * 2), "row numbers from 0 to 2, but .*: use row numbers from 0 to 1"),
         ([-1, 0], Steps([0.1] * 2, [1.0] * 2), "row numbers from -1 to 0"),
-        ([0.5], Steps([0.1], [1.0]), "expected one integer for each step"),
+        ([0.5], Steps([0.1], [1.0]), "give one integer for each step"),
         ([0], Steps([np.nan], [1.0]), "alpha"),
-        ([0, 0], Steps([0.5, 50.0], [1.0] * 2), "alpha.* from 0 to 1; got 0.5 to 50.0"),
-        ([0, 0], Steps([0.5, -0.1], [1.0] * 2), "alpha.* from 0 to 1"),
+        ([0, 0], Steps([0.5, 50.0], [1.0] * 2), "alpha.* from 0.5 to 50.0: give strengths from 0 to 1"),
+        ([0, 0], Steps([0.5, -0.1], [1.0] * 2), "alpha.* from -0.1 to 0.5: give strengths from 0 to 1"),
         ([0, 0], Schedule((0.5, 0.0), (2.0, 1.0)), "exponential schedule from 0.5 to 0.0"),
         ([0, 0], Schedule((0.5, 0.1), (2.0, -1.0)), "exponential schedule from 2.0 to -1.0"),
         ([0], Steps([0.1], [0.0]), "radii"),

@@ -24,7 +24,7 @@ from som_classifier.segmentation import CANNOT, NO_BACKGROUND, Segmentation
 from som_classifier.spotting.spotted import SpottingOptions
 from spotters import finding
 
-AGAIN = "restart sensor_gateway to play the source once more, or restart it with"
+AGAIN = "restart sensor_gateway to play the source once more, or restart sensor_gateway with"
 
 
 def status(service: str, **fields: Any) -> Status:
@@ -174,37 +174,37 @@ def test_a_latency_that_is_not_told_is_a_dash(latency_ms: dict[str, float], show
 @pytest.mark.parametrize(
     ("state", "told"),
     [
-        ("source ended", "; restart som_classifier to play"),
-        ("camera lost: it does not answer", "; som_classifier keeps trying"),
-        ("no model: there is no m.npz yet", ", so every action is rejected; set --model"),
-        ("model not renewed: m.npz: damaged", "; the previous model stays in use"),
+        ("source ended", ": restart som_classifier to play"),
+        ("camera lost: it does not answer", " and keeps trying"),
+        ("no model: there is no m.npz yet", " and therefore recognises no action: set --model"),
+        ("model not renewed: m.npz: damaged", " and still uses the previous model: correct"),
     ],
 )
 def test_a_state_in_which_nothing_is_answered_is_a_problem(state: str, told: str) -> None:
     [problem] = examined(state=state).problems
-    assert problem.startswith(f"som_classifier: {state}{told}")
+    assert problem.startswith(f"som_classifier has the state '{state}'{told}")
 
 
 @pytest.mark.parametrize(
     ("state", "source", "told"),
     [
-        ("camera lost: it cannot be opened", "file wave.mp4 (camera)", "sensor_gateway keeps trying"),
+        ("camera lost: it cannot be opened", "file wave.mp4 (camera)", " and keeps trying"),
         (
             "source ended",
             "file wave.mp4 (camera)",
-            f"{AGAIN} --loop to repeat the source without end",
+            f": {AGAIN} --loop to repeat the source without end",
         ),
         (
             "source ended",
             DESCRIPTION,
-            f"{AGAIN} --repetitions 0 to repeat the source without end",
+            f": {AGAIN} --repetitions 0 to repeat the source without end",
         ),
     ],
 )
 def test_a_gateway_that_gives_nothing_is_told_with_what_it_reads(state: str, source: str, told: str) -> None:
     gateway = System(status("sensor_gateway", state=state), source=source)
     [problem] = [p for finding in examine(gateway).findings for p in finding.problems]  # type: ignore[arg-type]
-    assert problem.startswith(f"sensor_gateway: {state} ({source}); {told}")
+    assert problem.startswith(f"sensor_gateway has the state '{state}' ({source}){told}")
 
 
 class Sensorless(System):
@@ -236,7 +236,7 @@ def test_two_of_one_identity_are_a_problem_that_names_both(monkeypatch: pytest.M
     code, output = diagnosed(monkeypatch, system)
     assert code == 1
     assert (
-        f"more than one instance of pose_preprocessor runs (a on lab, {second} on lab), so every action is answered "
+        f"more than one instance of pose_preprocessor runs (a on lab, {second} on lab), so every result is published "
         "more than once: stop all instances but one"
     ) in output
 
