@@ -65,8 +65,8 @@ class RecoveringSubscriber:
     Zenoh's subscriber can request the past, but sometimes loses all of it: it requests each publisher's past twice, and
     passes on at once what is put between the two replies. Then it takes all earlier samples for repetitions, and drops
     them, with those put since its first request. It also returns the past of one publisher after that of another.
-    Therefore the past is requested here, and what Zenoh's subscriber drops after that. It only adds the past of
-    publishers that connect later.
+    Therefore the past is requested here, and then what Zenoh's subscriber has dropped. Zenoh's subscriber only adds the
+    past of publishers that connect later.
     """
 
     def __init__(self, session: zenoh.Session, key_expr: str, ring: int, past: Past | None) -> None:
@@ -121,7 +121,7 @@ class RecoveringSubscriber:
         return self._taken.popleft() if self._taken and not self._is_undeclared else None
 
     def _take(self, sample: zenoh.Sample) -> None:
-        """Take a sample of Zenoh's subscriber, unless it is of the past, and what this has dropped before it."""
+        """Take a sample of Zenoh's subscriber unless it is of the past, behind those that were dropped before it."""
         source, number = _numbered(sample) if self._newest else (None, 0)
         newest = self._newest.get(source, number - 1)
         if number > newest:  # a publisher's numbers rise
@@ -130,7 +130,7 @@ class RecoveringSubscriber:
             self._taken.append(sample)
 
     def _dropped(self, following: zenoh.Sample, newest: int) -> list[zenoh.Sample]:
-        """Request what the publisher of a sample has put before that, and after the newest of the past."""
+        """Request the samples that a publisher put between the newest of the past and a following one."""
         assert self._past is not None
         source, number = _numbered(following)
         self._kept = kept = Kept(self._session, str(following.key_expr), self._past.times)
