@@ -220,6 +220,11 @@ def test_a_confidence_that_is_no_probability_counts_as_the_nearest_one(confidenc
     assert doing.action_probability == pytest.approx(share * doing.probability)
 
 
+def test_absurd_activities_of_actions_hide_no_contact() -> None:
+    doing = newest(partial(confidence=0.5, activations={"lift": 1e308, "put": -1e308}))
+    assert doing == newest(partial(confidence=0.5))
+
+
 def test_an_action_that_is_marked_as_the_other_hands_is_not_this_ones() -> None:
     assert newest(partial(hand="right")).action == "lift"
     assert newest(partial(hand="left")).action is None

@@ -168,6 +168,37 @@ def test_what_was_put_before_is_received_though_more_is_put_while_it_is_requeste
     assert [frame.stamp_ns for frame in received] == [frame.stamp_ns for frame in FRAMES[: len(received)]]
 
 
+def test_what_is_put_while_the_past_is_requested_is_received_as_well(session: zenoh.Session) -> None:
+    """Zenoh's own subscriber holds it back, and drops it once something that was put later has come."""
+    of_all, of_publisher = list[zenoh.Query](), list[zenoh.Query]()
+    key = keys.key(keys.POSTURE, "kinect0", 1)
+
+    def reply_late(query: zenoh.Query) -> None:
+        if "/pub/" in str(query.key_expr):
+            of_publisher.append(query)
+        elif str(query.key_expr) != f"{key}/@adv/**":
+            of_all.append(query)
+
+    slow = session.declare_queryable(f"{keys.pattern(keys.POSTURE, 'kinect0')}/@adv/**", reply_late)
+    outbox, received, frames = Outbox(session), list[Posture](), iter(FRAMES)
+    outbox.put(next(frames))
+    inbox = started(session, received)
+    wait_until(lambda: bool(of_publisher) and len(of_all) == 2, "Zenoh and the inbox have requested the past")
+    outbox.put(next(frames))
+    of_all.clear()
+
+    def put_more() -> bool:
+        outbox.put(next(frames))
+        return len(received) > 1
+
+    wait_until(put_more, "a frame has come that was put after the requests")
+    of_publisher.clear()
+    inbox.close()
+    slow.undeclare()
+    session.close()
+    assert [frame.stamp_ns for frame in received] == [frame.stamp_ns for frame in FRAMES[: len(received)]]
+
+
 def test_what_several_people_did_before_is_received_in_the_order_in_which_it_was_put(session: zenoh.Session) -> None:
     outbox, received = Outbox(session), list[Posture]()
     frames = [frame.model_copy(update={"agent": agent}) for frame in FRAMES[:5] for agent in (2, 1, 3)]

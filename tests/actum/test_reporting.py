@@ -1,9 +1,12 @@
+import time
+
 import pytest
 
 from actum.codec import decode, encode
 from actum.messages import HopTime
-from actum.node import Counters
+from actum.node import SECOND_NS, Counters
 from actum.runtime.reporting import MOST_KEYS, MOST_ORIGINS, Meter, Reporter
+from actum.runtime.subscribing import ANSWER_S
 from actum.runtime.turns import Turns
 from actum.settings import ServiceSettings
 from people import STANDING, skeleton
@@ -63,11 +66,17 @@ def test_the_times_between_messages_that_a_node_measures_are_in_its_status() -> 
     assert decode(frame.key, frame.payload, frame.encoding).hops == counters.hops
 
 
-def test_gaps_between_final_actions_of_before_are_no_losses() -> None:
-    """Publishers keep the final ones alone, and partial ones have numbers between them."""
+@pytest.mark.parametrize("late_s", [0.0, 2 * ANSWER_S], ids=["at once", "after a publisher that does not answer"])
+def test_gaps_between_final_actions_of_before_are_no_losses(late_s: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Publishers keep the final ones alone, and partial ones have numbers between them.
+
+    A service that goes on where another ended asks twice: for what is answered, and for what is not.
+    """
     watched = meter()
     key = "actum/kinect0/action/1"
     watched.await_history()
+    came_ns = time.monotonic_ns() + round(late_s * SECOND_NS)
+    monkeypatch.setattr(time, "monotonic_ns", lambda: came_ns)
     for seq in (10, 70, 130):
         watched.received(key, action("push", seq=seq), "one")
     assert watched.status().drops == {}

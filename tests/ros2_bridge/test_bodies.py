@@ -241,6 +241,25 @@ def test_models_of_bodies_that_never_come_are_forgotten() -> None:
     assert kept_bytes < MOST_AGENTS * 50_000
 
 
+def test_the_model_of_a_body_that_is_there_is_kept_however_many_others_have_come_since() -> None:
+    made = bridge()
+    given_to(made, [urdf("ab", human_model.urdf("ab", unit_m=0.3))])
+    text = human_model.urdf("", unit_m=0.2)
+    for i in range(MOST_AGENTS):
+        given_to(made, [tracked(FIRST_NS, "ab", f"b{i}"), urdf(f"b{i}", text.replace('_"', f'_b{i}"'))])
+    given_to(made, [tracked(FIRST_NS)])
+    found = given_to(made, (
+        each for stamp_ns in stamps(5, FIRST_NS + SECOND_NS)
+        for each in (
+            tracked(stamp_ns, "ab"),
+            tf(transform(stamp_ns, "body_ab", (0, 0, 2.0), UPRIGHT_IN_OPTICAL)),
+            joint_states(stamp_ns, "ab", UPRIGHT),
+        )
+    ))  # fmt: skip
+    seen = joints(found[-1])
+    assert np.linalg.norm(seen[INDEX["right_hand"]] - seen[INDEX["right_elbow"]]) == pytest.approx(0.3)
+
+
 def test_frames_count_more_than_joint_states() -> None:
     made = bridge()
     found = given_to(made, (

@@ -75,6 +75,19 @@ def test_an_arm_hanging_or_a_straight_one_has_no_twist() -> None:
     assert hanging.angles == pytest.approx({"l_y_shoulder": 0, "l_p_shoulder": 0, "l_elbow": 0})
 
 
+@pytest.mark.parametrize("side", ["l", "r"])
+@pytest.mark.parametrize("up", [-1, 1], ids=["hangs", "is raised"])
+@pytest.mark.parametrize("aside_deg", [-2.5, 2.5])
+def test_an_arm_that_hangs_or_is_raised_leans_to_the_side_to_which_it_was_seen_to_lean(side, up, aside_deg) -> None:
+    """Whether it also leans ahead is left out: the first angle would turn about as an arm swings."""
+    aside = np.radians(aside_deg)
+    angles = arm(side, (0, np.sin(aside), up * np.cos(aside)), None).angles
+    assert bone(poses(angles), f"{side}_shoulder", f"{side}_elbow") == pytest.approx(
+        (0, np.sin(aside), up * np.cos(aside)), abs=1e-6
+    )
+    assert angles[f"{side}_y_shoulder"] == 0
+
+
 @pytest.mark.parametrize(
     ("side", "upper", "angles"),
     [

@@ -40,7 +40,7 @@ def test_types_have_the_hashes_by_which_ros_knows_them() -> None:
 
 
 OWN_HASHES = {
-    "actum_msgs/msg/ActionEvent": "RIHS01_d8a60b44f4bf56713c2c49aaa46af0819c25e9308c74a03060d9fa8d8d9b5000",
+    "actum_msgs/msg/ActionEvent": "RIHS01_63877d6f475293326454adc2df2d594c2711b9328f26a3c0d220183235064293",
     "actum_msgs/msg/ActionIntent": "RIHS01_dd63e3c73b53845c4cea56b8f77c6a3e44fa2559f61cf18b0b3d1cd9d146989e",
     "actum_msgs/msg/IntendedContact": "RIHS01_3fa8aa0d7792ee51acd91e6117c457b9f2447c7972b660ae0aa0872c8c6ad3e2",
     "actum_msgs/msg/PersonAction": "RIHS01_5b617083ac53fc605a8b45c54b6dc15db9e083cf6a1d0833810adac1b678d2c9",

@@ -2,6 +2,7 @@
 
 import heapq
 import math
+import sys
 from collections.abc import Mapping, Sequence
 
 MOST_SHARES = 8
@@ -20,7 +21,7 @@ def shares_of(action: str, confidence: float, activations: Mapping[str, float]) 
     """
     active = activations.get(action, -math.inf)
     others = heapq.nlargest(MOST_SHARES, ((each, label) for label, each in activations.items() if label != action))
-    gaps = [max(active - each, 0.0) for each, _ in others]
+    gaps = [min(max(active - each, 0.0), sys.float_info.max) for each, _ in others]
     inverse = _inverse_temperature(gaps, confidence)
     shares = [confidence * math.exp(-inverse * gap) for gap in gaps]
     scale = min((1 - confidence) / max(sum(shares), 1e-9), 1.0)

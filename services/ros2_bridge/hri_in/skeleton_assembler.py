@@ -51,11 +51,16 @@ class SkeletonAssembler:
         if len(ids) > MOST_AGENTS:
             self._counters.reject("too_many_bodies", f"{len(ids)} bodies; the first {MOST_AGENTS} are used")
         self.bodies = {each: self.bodies.get(each) or self._body(each) for each in ids[:MOST_AGENTS]}
+        for body_id in self._models.keys() & self.bodies:
+            self._models.move_to_end(body_id)
         if stamp_ns is not None:
             yield from self.advance(stamp_ns, ids)
 
     def describe(self, body_id: str, links: Sequence[Link]) -> None:
-        """Take the links of the model of a body, also of one that is not tracked yet."""
+        """Take the links of the model of a body, also of one that is not tracked yet.
+
+        The model of a body that has been gone for longest makes room.
+        """
         self._models[body_id] = links
         self._models.move_to_end(body_id)
         if len(self._models) > MOST_AGENTS:

@@ -65,11 +65,12 @@ def arm(side: str, upper: Vector | None, fore: Vector | None) -> Limb:
 
 
 def _shoulder(upper: Vector, sign: float) -> tuple[float, float]:
-    """Return the angles about z and x (rad) that point an upper arm; where it hangs, the first is 0."""
+    """Return the angles about z and x (rad) that point an upper arm; where it hangs or is raised, the first is 0."""
     x, y, z = upper
     raised = math.hypot(x, y)
     if raised < LEAST_TWIST:
-        return 0.0, math.atan2(raised, -z)
+        aside = math.asin(sign * y)
+        return 0.0, aside if z < 0 else math.pi - aside
     yaw, pitch = math.atan2(x, sign * y), math.atan2(raised, -z)
     least, most = SHOULDER_YAW_RAD
     if not least <= yaw <= most and -pitch >= LEAST_SHOULDER_PITCH_RAD:

@@ -31,8 +31,9 @@ MOST_KEYS = 256
 """Most keys that are counted: the one silent for longest, such as that of an agent who left, makes room."""
 MOST_ORIGINS = 16
 """Most publishers on a key whose numbers are followed: each mark may come from a process of its own."""
-HISTORY_NS = 1_000_000_000
-"""How long after their request earlier actions may come (ns), in whose numbers there are gaps: they come at once."""
+HISTORY_NS = 3_000_000_000
+"""How long after their request earlier actions may come (ns), in whose numbers there are gaps: they come at once, but
+twice a second later where a publisher does not answer."""
 REPORT_S = 1.0
 """Interval between two reports (s)."""
 

@@ -20,6 +20,11 @@ class Past(NamedTuple):
     age_s: float
     most: int | None = None
 
+    @property
+    def times(self) -> str:
+        """The times, as Zenoh writes a range."""
+        return f"[now(-{self.age_s:.3f}s)..]"
+
 
 class Kept:
     """The messages that publishers keep: requested at once, awaited when they are read.
@@ -59,28 +64,29 @@ class RecoveringSubscriber:
 
     Zenoh's subscriber can request the past, but sometimes loses all of it: it requests each publisher's past twice, and
     passes on at once what is put between the two replies. Then it takes all earlier samples for repetitions, and drops
-    them. It also returns the past of one publisher after that of another. Therefore the past is requested here, and
-    Zenoh's subscriber only adds the past of publishers that connect later.
+    them, with those put since its first request. It also returns the past of one publisher after that of another.
+    Therefore the past is requested here, and then what Zenoh's subscriber has dropped. Zenoh's subscriber only adds the
+    past of publishers that connect later.
     """
 
     def __init__(self, session: zenoh.Session, key_expr: str, ring: int, past: Past | None) -> None:
         late = past and ext.HistoryConfig(detect_late_publishers=True, max_samples=past.most, max_age=past.age_s)
         channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
         recovery = ext.RecoveryConfig(heartbeat=True, periodic_queries=None)
+        self._session, self._past = session, past
         self._subscriber = ext.declare_advanced_subscriber(session, key_expr, channel, history=late, recovery=recovery)
         self._live = self._subscriber.handler  # which ends quietly where the subscriber is undeclared
-        self._kept = past and Kept(session, key_expr, f"[now(-{past.age_s:.3f}s)..]", past.most)
-        self._earlier: deque[zenoh.Sample] = deque()
-        self._newest: dict[Source, int] = {}
+        self._kept = past and Kept(session, key_expr, past.times, past.most)
+        self._taken: deque[zenoh.Sample] = deque()
+        self._newest: dict[Source | None, int] = {}
         self._is_undeclared = False
 
     def __iter__(self) -> Iterator[zenoh.Sample]:
         """Yield samples until the subscriber is undeclared."""
-        while (earlier := self._next_earlier()) is not None:
-            yield earlier
+        yield from iter(self._next_taken, None)
         for sample in self._live:
-            if self._is_new(sample):
-                yield sample
+            self._take(sample)
+            yield from iter(self._next_taken, None)
 
     def try_recv(self) -> zenoh.Sample | None:
         """Return the next sample if there is one.
@@ -88,12 +94,11 @@ class RecoveringSubscriber:
         Raises:
             zenoh.ZError: the subscriber was undeclared.
         """
-        if (earlier := self._next_earlier()) is not None:
-            return earlier
-        while (sample := self._live.try_recv()) is not None:
-            if self._is_new(sample):
-                return sample
-        return None
+        while (taken := self._next_taken()) is None:
+            if (sample := self._live.try_recv()) is None:
+                return None
+            self._take(sample)
+        return taken
 
     def undeclare(self) -> None:
         """End the subscription, also for a thread that awaits the past or is in the middle of it."""
@@ -102,26 +107,36 @@ class RecoveringSubscriber:
             kept.give_up()
         self._subscriber.undeclare()
 
-    def _next_earlier(self) -> zenoh.Sample | None:
-        """Return the next sample of the past, which the first call awaits; None after the last, or once undeclared."""
-        if self._kept is not None:
-            self._earlier.extend(self._kept.samples())
-            for sample in self._earlier:
-                if (info := sample.source_info) is not None:
-                    source = _source(info)
-                    self._newest[source] = max(info.source_sn, self._newest.get(source, 0))
-            self._kept = None
-        return self._earlier.popleft() if self._earlier and not self._is_undeclared else None
+    def _next_taken(self) -> zenoh.Sample | None:
+        """Return the next of the samples that are to be returned; None where there is none, or once undeclared.
 
-    def _is_new(self, sample: zenoh.Sample) -> bool:
-        """Tell whether a sample of Zenoh's subscriber is none of the past. A publisher's numbers rise."""
-        if not self._newest or (info := sample.source_info) is None:
-            return True
-        source = _source(info)
-        if info.source_sn <= self._newest.get(source, -1):
-            return False
-        self._newest.pop(source, None)
-        return True
+        The first call awaits the past.
+        """
+        if self._kept is not None:
+            self._taken.extend(self._kept.samples())
+            for source, number in map(_numbered, self._taken):
+                if source is not None:
+                    self._newest[source] = max(number, self._newest.get(source, 0))
+            self._kept = None
+        return self._taken.popleft() if self._taken and not self._is_undeclared else None
+
+    def _take(self, sample: zenoh.Sample) -> None:
+        """Take a sample of Zenoh's subscriber unless it is of the past, behind those that were dropped before it."""
+        source, number = _numbered(sample) if self._newest else (None, 0)
+        newest = self._newest.get(source, number - 1)
+        if number > newest:  # a publisher's numbers rise
+            self._newest.pop(source, None)
+            self._taken.extend(self._dropped(sample, newest) if number > newest + 1 else ())
+            self._taken.append(sample)
+
+    def _dropped(self, following: zenoh.Sample, newest: int) -> list[zenoh.Sample]:
+        """Request the samples that a publisher put between the newest of the past and a following one."""
+        assert self._past is not None
+        source, number = _numbered(following)
+        self._kept = kept = Kept(self._session, str(following.key_expr), self._past.times)
+        samples = [(sample, *_numbered(sample)) for sample in kept.samples()]
+        self._kept = None
+        return [sample for sample, of, its in samples if of == source and newest < its < number]
 
 
 Subscriber = (
@@ -136,8 +151,11 @@ def subscribe(session: zenoh.Session, key_expr: str, ring: int) -> Subscriber:
     return session.declare_subscriber(key_expr, handlers.RingChannel(ring))
 
 
-def _source(info: zenoh.SourceInfo) -> Source:
-    return str(info.source_id.zid), info.source_id.eid
+def _numbered(sample: zenoh.Sample) -> tuple[Source | None, int]:
+    """Return the publisher of a sample, and the sample's number there; None and 0 where it has none."""
+    if (info := sample.source_info) is None:
+        return None, 0
+    return (str(info.source_id.zid), info.source_id.eid), info.source_sn
 
 
 def _put_at(sample: zenoh.Sample) -> float:
