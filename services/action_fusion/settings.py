@@ -143,8 +143,8 @@ class Settings(RememberingSettings):
         description=(
             "for each action, the result that is expected for the object, such as lift=lifted,push=pushed. Events say "
             "whether the expected result occurred. The list has a second effect: in the actions that it contains, an "
-            "object in the hand is never taken for a tool. In all other actions, the object in the hand can be a tool, "
-            "and events then name the object on which the person uses the tool"
+            "object in the hand is never taken for a tool. In all other actions, the object in the hand can be a tool. "
+            "If it is a tool, events name the object on which the person uses the tool"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(
