@@ -35,8 +35,8 @@ SET_HELP = (
     "axes=upright (default): one coordinate axis stays vertical, and the other axes turn smoothly with the person. "
     "axes=posture: all axes turn with the person in each frame. origin=torso (default) or origin=hips: the point "
     f"from which positions are measured. attention={MOVING} (default): use only the joints of the body part that moves "
-    f"most. attention={ALL}: use all joints. attention={', '.join(LIMBS[:-1])} or {LIMBS[-1]}: use only the joints of this "
-    f"limb. attention={TRUNK}: use only head, neck and torso"
+    f"most. attention={ALL}: use all joints. attention={', '.join(LIMBS[:-1])} or {LIMBS[-1]}: use only the joints of "
+    f"this limb. attention={TRUNK}: use only head, neck and torso"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
