@@ -92,9 +92,9 @@ class Settings(RememberingSettings):
         0.25,
         gt=0,
         description=(
-            "maximum distance between a hand and an object that the hand can reach (m). For an object that moves "
-            "during the action, the maximum is this distance plus --grasp-m, because a person can move an object with "
-            "a tool"
+            "maximum distance between a hand and the object of an action (m), except when the person points. If the "
+            "object moves during the action, --grasp-m is added to this distance, because the hand can hold a tool and "
+            "is then farther from the object"
         ),
     )
     grasp_m: float = Field(
@@ -142,9 +142,9 @@ class Settings(RememberingSettings):
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
             "for each action, the result that is expected for the object, such as lift=lifted,push=pushed. Events say "
-            "whether the expected result occurred. In an action that has an expected result, an object in the hand is "
-            "always the object of the action. In any other action, an object in the hand can be a tool; if it is a "
-            "tool, the object of the action is the object on which the tool is used"
+            "whether the expected result occurred. The list has a second effect: in the actions that it contains, an "
+            "object in the hand is never taken for a tool. In all other actions, the object in the hand can be a tool. "
+            "If it is a tool, events name the object on which the person uses the tool"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(

@@ -49,7 +49,8 @@ def simulate(
 def scene() -> None:
     """Publish start and end marks for the actions of the simulated scene, until Ctrl-C.
 
-    Use this command to try recognition with marks while 'actum up' runs without --marked.
+    Use this command while 'actum up' runs, to see how marked actions are recognised. With 'actum up --marked', you do
+    not need this command, because 'actum up' then publishes the same marks.
     """
     with connect_whenever() as client:
         mark_truth(client, stop_on_signals())

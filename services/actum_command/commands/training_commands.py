@@ -25,16 +25,18 @@ from som_classifier.model_loading import ModelError, kept_in, load_model
 from som_classifier.presets import DEFAULT, PAPER, PRESETS, Preset
 
 Files = Annotated[list[Path], typer.Argument(help="recordings, or folders of recordings")]
+*LIMBS, TRUNK = PART_NAMES
 PRESET_HELP = (
     f"kind of model to train. {PAPER.name}: the method of the paper that actum implements (Gharaee et al. 2017). "
     f"{DEFAULT.name} (default): a more accurate method"
 )
 SET_HELP = (
-    f"change a setting of --preset {PAPER.name}; the option can be repeated. axes=upright (default): one coordinate "
-    "axis stays vertical, and the other axes turn smoothly with the body. axes=posture: all axes turn with the body in "
-    "each frame. origin=torso (default) or origin=hips: the point from which positions are measured. "
-    f"attention={MOVING} (default): use only the joints of the body part that moves most. attention={ALL}: use all "
-    f"joints. attention={', '.join(PART_NAMES[:-1])} or {PART_NAMES[-1]}: use only the joints of the named part"
+    f"change a setting of the preset '{PAPER.name}' (--preset {PAPER.name}); the option can be repeated. "
+    "axes=upright (default): one coordinate axis stays vertical, and the other axes turn smoothly with the person. "
+    "axes=posture: all axes turn with the person in each frame. origin=torso (default) or origin=hips: the point "
+    f"from which positions are measured. attention={MOVING} (default): use only the joints of the body part that moves "
+    f"most. attention={ALL}: use all joints. attention={', '.join(LIMBS[:-1])} or {LIMBS[-1]}: use only the joints of "
+    f"this limb. attention={TRUNK}: use only head, neck and torso"
 )
 SEED_HELP = "seed of the random numbers of the training; the same seed and recordings give the same model"
 BACKGROUND_HELP = (
