@@ -177,7 +177,7 @@ class Settings(RememberingSettings):
                 "world-from-camera gives the transform of one camera, but this process serves the sensors "
                 f"{self.sensor}: store the transform of each camera in a file of its own, with the sensor's name in "
                 "the file name, such as world-left.txt and world-right.txt. Then set world-from-camera to "
-                f"world-{SENSOR}.txt, with the word {SENSOR} exactly as it stands here"
+                f"world-{SENSOR}.txt and keep {SENSOR} as it is: the service replaces it by each sensor's name"
             )
         return self
 

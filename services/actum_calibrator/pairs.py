@@ -63,8 +63,8 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     for file in files:
         if name_of(file) in named:
             raise PairingError(
-                f"{named[name_of(file)]} and {file} are two pictures of one camera, and both have the same name: "
-                "delete or rename one of the two"
+                f"{named[name_of(file)]} and {file} have the same name, but each name can stand for one picture of a "
+                "camera only: delete or rename one of the two files"
             )
         named[name_of(file)] = file
     return named

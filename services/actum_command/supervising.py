@@ -102,8 +102,8 @@ class Supervisor:
         if child.process.returncode == UNUSABLE:  # a restart would end the same way
             where = f"in {self._log.name}" if self._log else "above"
             raise UnusableError(
-                f"{child.program.name} cannot start with its settings: see the error message of {child.program.name} "
-                f"{where}"
+                f"{child.program.name} did not start, because one of its settings is wrong: see the error message of "
+                f"{child.program.name} {where}"
             )
         if child.process.returncode == TAKEN:
             child.due_s = now_s + ELSEWHERE_S

@@ -48,7 +48,10 @@ class Signed:
             raise ValueError("the private key is not an elliptic-curve key; use a key that 'actum deploy' made")
         certificate = x509.load_pem_x509_certificate(certificate_pem)
         if certificate.public_key() != key.public_key():
-            raise ValueError("the private key does not belong to the certificate; use the two files of one authority")
+            raise ValueError(
+                "the private key does not belong to the certificate: use the key and the certificate of the same "
+                "certificate authority"
+            )
         return cls(certificate, key)
 
 

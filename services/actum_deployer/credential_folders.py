@@ -28,8 +28,8 @@ SERVICES_USER = 10001
 PRIVATE = 0o600
 """The mode of files that nobody but their owner may read."""
 NEW_AUTHORITY = (
-    "delete this folder, run 'actum deploy init' and copy all new credentials to their machines, because all earlier "
-    "credentials become invalid"
+    "delete this folder, run 'actum deploy init', and copy the new credentials to all machines. The earlier "
+    "credentials then become invalid"
 )
 """What to do where the authority cannot be used."""
 
@@ -131,7 +131,7 @@ def authority_of(root: Path, may_be_made: bool) -> Signed:
     except (OSError, ValueError) as error:
         raise SettingsError(
             f"the certificate authority in {folder} cannot be used ({error}): restore {AUTHORITY} and {KEY} in this "
-            f"folder, or {NEW_AUTHORITY}"
+            f"folder. If you cannot, {NEW_AUTHORITY}"
         ) from None
     if lasting(found, 1) <= 0:
         expired = found.certificate.not_valid_after_utc

@@ -26,10 +26,10 @@ def people_of(recordings: Sequence[Recording]) -> list[str]:
     """
     people = sorted({recording.person for recording in recordings})
     if len(people) < 2:
-        known = f"only {people[0]}" if any(people) else "nobody"
+        known = f"only {people[0]}" if any(people) else "nobody whose name is known"
         raise TrainingError(
             "each person is tested with a model that was trained on other people, so recordings of at least two "
-            f"people are needed. The given recordings name {known}: record another person with --person NAME"
+            f"people are needed. The given recordings show {known}: record another person with --person NAME"
         )
     return people
 

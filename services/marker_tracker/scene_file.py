@@ -129,8 +129,8 @@ def load(path: Path) -> Catalogue:
         scene = SceneFile.model_validate(content)
     except RecursionError:
         raise SceneFileError(
-            f"{path} contains a YAML alias (*name) inside the part that this alias stands for (&name): remove this "
-            "alias"
+            f"{path} contains a YAML alias (*name) that refers to itself, because it is inside the value that &name "
+            "defines: remove this alias"
         ) from None
     except ValidationError as error:
         raise SceneFileError("; ".join(_problem(path, root, each) for each in error.errors())) from None

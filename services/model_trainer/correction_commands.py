@@ -44,7 +44,7 @@ class CorrectionCommands:
         if not 0 < request.end_ns - request.start_ns <= MAX_SEGMENT_NS:
             raise Refusal(
                 f"end_ns has to be later than start_ns, but by at most {MAX_SEGMENT_NS // SECOND_NS} s: copy both "
-                "values from the same event or held_back message"
+                "values from one message, either an event or a held_back message"
             )
         self._sets.folder(request.set)
         frames = list(self._recent.of(request.agent, request.start_ns, request.end_ns))

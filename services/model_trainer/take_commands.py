@@ -118,8 +118,8 @@ class TakeCommands:
             anew = Record(set=request.set, label=label, person=newest.person, count=count)
         except ValidationError as error:
             raise Refusal(
-                f"the newest recording {newest.id} cannot be repeated, because its label or person is not allowed "
-                f"({problems(error)}): start a new recording with the command 'record'"
+                f"the newest recording {newest.id} cannot be repeated, because the name of its label or of its person "
+                f"is not valid ({problems(error)}): start a new recording with the command 'record'"
             ) from None
         self._begin(anew)
         self._replaced = newest.id

@@ -46,9 +46,9 @@ class MapContinuation(Continuation):
         units, shares = self.association.changes.shape[1], (2, len(STEPS))
         if units != len(self.som.weights) or self.shares.shape != shares or not np.isfinite(self.shares).all():
             raise ValueError(
-                f"the prediction of postures (associations of {units} units, weights of the shape {self.shares.shape}) "
-                f"does not fit the map, which needs associations of {len(self.som.weights)} units and finite weights "
-                f"of the shape {shares}: train the model again"
+                f"the model's arrays for predicting postures do not fit its map: they have {units} units and weights "
+                f"of the shape {self.shares.shape}, but the map has {len(self.som.weights)} units and needs finite "
+                f"weights of the shape {shares}. Train the model again"
             )
 
     @classmethod

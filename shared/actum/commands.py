@@ -145,8 +145,8 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
         fields = unpack(payload) if encoding.startswith(MSGPACK) else _from_json(payload)
     except UNPACK_ERRORS as error:
         raise Refusal(
-            f"the request cannot be decoded ({error}): send a JSON object, or a MessagePack map with the encoding "
-            f"{MSGPACK}, with at most {MOST_VALUES} values and no field name twice"
+            f"the request cannot be decoded ({error}): send a JSON object, or a MessagePack map (encoding "
+            f"{MSGPACK}). Either can have at most {MOST_VALUES} values, and each field name once only"
         ) from None
     if not isinstance(fields, dict) or not all(isinstance(name, str) for name in fields):
         raise Refusal(

@@ -74,7 +74,7 @@ def test_what_cannot_be_used_as_it_is_set_is_not_started_again(ending: type[Prog
         supervisor.start(ending("worker", "ending", [str(UNUSABLE)]))
         with pytest.raises(
             UnusableError,
-            match=f"worker cannot start with its settings: see the error message of worker in {tmp_path / 'log'}",
+            match=f"because one of its settings is wrong: see the error message of worker in {tmp_path / 'log'}",
         ):
             outcome(supervisor)
     assert (tmp_path / "log").read_text() == "mode: no such thing\n"
@@ -89,7 +89,7 @@ def test_a_system_ends_with_the_line_of_the_program_that_cannot_be_used(
     told = capfd.readouterr()
     assert ended.value.exit_code == 1
     assert told.out == "mode: no such thing\n"
-    assert "worker cannot start with its settings" in told.err
+    assert "worker did not start, because one of its settings is wrong" in told.err
 
 
 SUPERVISING = """

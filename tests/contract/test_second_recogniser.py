@@ -100,7 +100,9 @@ def test_its_search_is_tuned(folder: Path) -> None:
 
 def test_it_is_drawn_as_far_as_it_goes_without_maps(folder: Path) -> None:
     lack = "the model has no maps: models of kind 'nearest' contain none"
-    assert f"{lack}: give recordings, too" in told(folder, "inspect", "model.npz", "-o", "pictures", code=1)
+    assert f"{lack}: give recordings in addition to the model" in told(
+        folder, "inspect", "model.npz", "-o", "pictures", code=1
+    )
     told(folder, "inspect", "model.npz", "three.mcap", "-o", "pictures", "--format", "svg")
     drawn = {path.stem for path in (folder / "pictures").glob("*.svg")}
     assert {"confusion", "time-lift"} <= drawn and not any("map" in name or "trace" in name for name in drawn)

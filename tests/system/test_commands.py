@@ -161,7 +161,7 @@ def test_up_ends_with_the_complaint_of_a_service_that_cannot_be_used_as_it_is_se
     refused = running.actum("up", "--source", "foo")
     assert refused.returncode == 1
     assert "sensor_gateway: settings: source: Input should be 'camera'" in refused.stderr
-    assert "sensor_gateway cannot start with its settings" in refused.stderr
+    assert "sensor_gateway did not start, because one of its settings is wrong" in refused.stderr
     assert "actum is up" not in refused.stdout
     assert pids_of(running) == set()
 

@@ -78,8 +78,8 @@ def inspect(
             count = _write_inspection(model, recordings, output, picture_format, progress)
     except NoMapsError as error:
         fail(
-            f"{error}: give recordings, too. The command then draws how the model recognises the actions in these "
-            "recordings"
+            f"{error}: give recordings in addition to the model. The command then draws pictures of what the model "
+            "recognises in these recordings"
         )
     except (ModelError, RecordingError, OSError) as error:
         fail(str(error))

@@ -248,7 +248,7 @@ def _editing(file: Path) -> Iterator[None]:
     except (edits.EditError, RecordingError) as error:
         fail(str(error))
     except OSError as error:
-        fail(f"{file} cannot be written ({error.strerror}): the recording was not changed")
+        fail(f"the recording {file} was not changed, because it cannot be written: {error.strerror}")
 
 
 def _moved_to(text: str | None, now_ns: int | None, first_ns: int) -> int:

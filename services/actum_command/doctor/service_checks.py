@@ -118,7 +118,10 @@ def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
     """Yield the problems that a service's own state names; `source` is the source that it reads, in brackets."""
     match State.of(status.state):
         case State.CAMERA_LOST:
-            yield f"{name} has the state '{status.state}'{source} and keeps trying to open the camera"
+            yield (
+                f"{name} has the state '{status.state}'{source} and keeps trying to open the camera: check that the "
+                "camera is connected and that no other program uses it"
+            )
         case State.SOURCE_ENDED:
             endless = "--repetitions 0" if DESCRIPTION in source else "--loop"
             yield (
@@ -131,7 +134,10 @@ def _troubles(name: str, status: Status, source: str) -> Iterator[str]:
                 "to a model file"
             )
         case State.MODEL_NOT_RENEWED:
-            yield f"{name} has the state '{status.state}' and still uses the previous model: correct the model file"
+            yield (
+                f"{name} has the state '{status.state}' and still uses the previous model, because it cannot load the "
+                "changed model file: train the model again, or set another model file"
+            )
         case State.NOTHING_TO_DO | State.UNKNOWN_ACTIONS:
             yield f"{name}: {status.state}"
 

@@ -184,9 +184,9 @@ class Resumption:
         self._counters.reject("unwritable_state", reason)
         if self._writes:
             log.warning(
-                "the file of the service's published actions or events cannot be used (%s). After a restart, the "
-                "service may therefore publish different results for the same segments: check that the file is "
-                "readable and writable, and that the disk is not full",
+                "the service cannot use the file in which it stores what it has published (%s): check that the file is "
+                "readable and writable, and that the disk is not full. Without this file, the service can publish "
+                "different results for the same segments after a restart",
                 reason,
             )
         self._writes = False

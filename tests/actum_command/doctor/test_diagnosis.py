@@ -177,7 +177,7 @@ def test_a_latency_that_is_not_told_is_a_dash(latency_ms: dict[str, float], show
         ("source ended", ": restart som_classifier to play"),
         ("camera lost: it does not answer", " and keeps trying"),
         ("no model: there is no m.npz yet", " and therefore recognises no action: set --model"),
-        ("model not renewed: m.npz: damaged", " and still uses the previous model: correct"),
+        ("model not renewed: m.npz: damaged", " and still uses the previous model, because"),
     ],
 )
 def test_a_state_in_which_nothing_is_answered_is_a_problem(state: str, told: str) -> None:
