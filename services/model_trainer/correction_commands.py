@@ -70,8 +70,8 @@ class CorrectionCommands:
             for each in take.examples if is_correction(take) else []:
                 if (each.agent, each.bounds_ns) == (request.agent, bounds_ns):
                     raise Refusal(
-                        f"this event is already an example of {each.label!r} in the set {request.set}: to correct the "
-                        "event again, first delete that example in the panel 'Teach'"
+                        f"this event was corrected before, so it is an example of {each.label!r} in the set "
+                        f"{request.set}: to correct the event again, first delete that example in the panel 'Teach'"
                     )
 
 

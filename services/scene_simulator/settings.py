@@ -50,8 +50,8 @@ class Settings(ServiceSettings):
         1.0,
         ge=0,
         description=(
-            "minimum length of the scene (min). If the actions end earlier, background activities (see --everyday) "
-            "fill the remaining time. Ignored if --everyday is none"
+            "minimum length of the scene, in minutes. If the actions end earlier, background activities (see "
+            "--everyday) fill the remaining time. Ignored if --everyday is none"
         ),
     )
     pauses: Pauses = Field(

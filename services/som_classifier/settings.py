@@ -90,17 +90,15 @@ class Settings(RememberingSettings):
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "actions, such as wave,clap, that are published if the classifier finds them by itself. Other actions that "
-            "the classifier finds are not published. This option does not affect actions whose start and end are "
-            "marked by another program. Default: all actions of the model are published"
+            "the only actions, such as wave,clap, to publish among those that the classifier finds by itself. Actions "
+            "whose start and end another program marks are always published. Default: all actions of the model"
         ),
     )
     disabled_actions: Names = Field(
         frozenset(),
         description=(
-            "actions, such as wave,clap, that are not published if the classifier finds them by itself. This option "
-            "does not affect actions whose start and end are marked by another program. Default: all actions of the "
-            "model are published"
+            "do not publish these actions, such as wave,clap, when the classifier finds them by itself. Actions whose "
+            "start and end another program marks are always published. Default: none"
         ),
     )
 

@@ -53,8 +53,8 @@ class Settings(ServiceSettings):
     page_guarded: bool = Field(
         False,
         description=(
-            "allow other machines to open the web page without --page-token. Use this option only if something else "
-            "restricts access, such as a container host that publishes the port on 127.0.0.1 only"
+            "serve the web page to other machines although no --page-token is set. Use this option only if something "
+            "else guards the page, such as a container host that publishes the container's port on 127.0.0.1 only"
         ),
     )
     page_names: Annotated[frozenset[str], NoDecode, BeforeValidator(_names)] = Field(

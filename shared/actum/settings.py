@@ -210,9 +210,8 @@ class SharedSettings(NodeSettings):
     share: bool = Field(
         False,
         description=(
-            "let several processes of the same service share the sensors. Start each of these processes with --share. "
-            "Only one process at a time serves a sensor; if this process ends, another process takes over the sensor "
-            "within 2 s"
+            "divide the sensors among several processes of this service. Start each of these processes with --share. "
+            "Each sensor is served by one process; if this process ends, another one takes over the sensor within 2 s"
         ),
     )
 

@@ -96,7 +96,7 @@ def test_the_last_take_is_redone_though_events_were_corrected_after_it(teacher: 
 def test_an_event_is_corrected_once(teacher: Teacher) -> None:
     teacher.ask("correct", **event(label="wave"))
     for label in ("wave", ""):
-        with pytest.raises(Refusal, match="this event is already an example of 'wave' in the set kitchen"):
+        with pytest.raises(Refusal, match="so it is an example of 'wave' in the set kitchen"):
             teacher.ask("correct", **event(label=label))
     teacher.ask("correct", **event(start_ns=5 * SECOND_NS, end_ns=7 * SECOND_NS))
     assert len(teacher.examples()) == 2

@@ -106,8 +106,8 @@ def up(
         typer.Option(
             help=(
                 "the model file (.npz). The classifier loads this file as soon as the file exists, and again whenever "
-                "the file changes. Default: the model that was last chosen on the web page; if no model was chosen "
-                "there, simulated scenes use the model supplied with actum"
+                "the file changes. Default: the model that was last chosen on the web page. If no model was chosen "
+                "there, simulated scenes use the model supplied with actum, and no action is recognised from a camera"
             ),
             envvar="ACTUM_MODEL",
         ),

@@ -88,8 +88,8 @@ def posed(landmarks: Landmarks, rays: Array, scale: float = 1.0) -> Array:
     points_m: Array = rotated + translation
     if not (points_m[:, 2].min() > NEAREST_M and np.isfinite(points_m).all()):
         raise PlacingError(
-            "the body points found in the image fit no position of a person in front of the camera, so this detection "
-            "is not used"
+            "no position in front of the camera agrees with the body points found in the image, so this detection of a "
+            "person is not used"
         )
     return points_m
 

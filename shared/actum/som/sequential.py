@@ -117,7 +117,7 @@ def _checked_alphas(alphas: ArrayLike) -> NDArray[np.float64]:
     values = np.array(alphas, np.float64)
     if not ((values >= 0) & (values <= 1)).all():
         raise ValueError(
-            f"some adaptation strength (alpha) is below 0 or above 1, as they range from {values.min()} to "
-            f"{values.max()}: give strengths from 0 to 1"
+            f"the smallest adaptation strength (alpha) is {values.min()} and the largest {values.max()}: give "
+            "strengths from 0 to 1"
         )
     return values
