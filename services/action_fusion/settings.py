@@ -92,9 +92,8 @@ class Settings(RememberingSettings):
         0.25,
         gt=0,
         description=(
-            "maximum distance between a hand and the object of an action (m), except when the person points. If the "
-            "object moves during the action, --grasp-m is added to this distance, because the hand can hold a tool and "
-            "is then farther from the object"
+            "maximum distance (m) between a hand and the object of an action other than pointing. For an object that "
+            "moves during the action, the maximum is larger by --grasp-m: a tool in the hand can have moved the object"
         ),
     )
     grasp_m: float = Field(

@@ -49,8 +49,7 @@ class Signed:
         certificate = x509.load_pem_x509_certificate(certificate_pem)
         if certificate.public_key() != key.public_key():
             raise ValueError(
-                "the private key does not belong to the certificate: use the key and the certificate of the same "
-                "certificate authority"
+                "the private key and the certificate do not belong together: use the two files that were made together"
             )
         return cls(certificate, key)
 

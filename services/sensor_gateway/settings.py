@@ -37,8 +37,7 @@ class Settings(ServiceSettings):
     path: Path | None = Field(
         None,
         description=(
-            "the recording to play with --source recording: a file, or a folder whose files are played in the order of "
-            "their names"
+            "the file that --source recording plays, or a folder whose files it plays in the order of their names"
         ),
     )
     loop: bool = Field(
@@ -94,8 +93,8 @@ class Settings(ServiceSettings):
     pose_model: Path = Field(
         default_factory=default_pose_model,
         description=(
-            "file of the model that finds people in images, as downloaded by `actum models fetch`; required with "
-            "--source camera, realsense and openni2"
+            "file of the model that finds people in images; `actum models fetch` downloads this file. --source camera, "
+            "realsense and openni2 need it"
         ),
     )
     person_height_m: float | None = Field(

@@ -222,9 +222,8 @@ class RememberingSettings(SharedSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the classifier stores its latest actions, and the action fusion stores its latest "
-            "events. After a restart, both services keep the stored results and do not recognise the same segments a "
-            "second time. With --share the folder is not used, because processes that share a sensor receive each "
-            "other's results. Default: nothing is stored"
+            "a folder in which the classifier stores its latest actions, and the action fusion its latest events. "
+            "Therefore, after a restart, neither service publishes another result for the same segment. Not used with "
+            "--share: the processes then know each other's results. Default: nothing is stored"
         ),
     )

@@ -192,8 +192,8 @@ def picture(
         typer.Option(
             help=(
                 "a model file. The picture shows which action this model recognises in each labelled segment, and "
-                "which actions this model finds without the labels. Default: the picture shows the actions that were "
-                "recognised during the recording"
+                "which actions it finds by itself in the whole recording. Default: the picture shows the actions that "
+                "were recognised during the recording"
             )
         ),
     ] = None,

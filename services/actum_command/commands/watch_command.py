@@ -53,15 +53,14 @@ def watch(
         ),
     ] = None,
 ) -> None:
-    """Print live messages until Ctrl-C, one message per line, with time, key, segment id and content.
-
-    For the topic 'intent' (the objects that a hand reaches for), the command prints a line only when the likeliest
-    object changes, when the probability of this object first reaches 0.5 or 0.9, and when the reach ends. With --json,
-    the command prints all messages of this topic.
+    """Print live messages until Ctrl-C, one message per line: time, key, segment id and content.
 
     On a terminal, a line at the bottom also shows each person's ongoing action and its completeness. With --from, the
-    command prints the messages of recordings instead of live messages. The recordings can include a file that 'actum
-    record --events' is still writing.
+    command prints the messages of recordings instead, even of a file that 'actum record --events' is still writing.
+
+    Most messages on the topic 'intent' (the objects that a hand reaches for) repeat the one before. So the command
+    prints only those in which the likeliest object changes, this object's probability first reaches 0.5 or 0.9, or
+    the reach ends; with --json, it prints all.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):

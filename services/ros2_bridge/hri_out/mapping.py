@@ -71,7 +71,9 @@ def _role(text: str) -> str:
     try:
         named = [name for _, name, *_ in Formatter().parse(text) if name is not None]
     except ValueError as error:
-        raise ValueError(f"{text!r} cannot be used ({error}): write each brace of the text twice, as in {{{{") from None
+        raise ValueError(
+            f"the text {text!r} is not a format string ({error}): write {{{{ for {{ and }}}} for }}"
+        ) from None
     for name in named:
         if name not in PLACEHOLDERS:
             raise ValueError(
