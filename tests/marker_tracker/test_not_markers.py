@@ -4,7 +4,9 @@ import cv2
 import numpy as np
 import pytest
 
+from marker_tracker.detection.decoding import Candidates, decode
 from marker_tracker.detection.detector import MarkerDetector
+from marker_tracker.detection.families import family
 
 SIDE, CELLS = 96, 6
 DARK, PAPER = 30, 200
@@ -37,3 +39,18 @@ def mirrored(number: int) -> np.ndarray:
 @pytest.mark.parametrize("number", [1, 12, 25, 39, 47, 81, 83, 85, 92, 95, 101, 186])
 def test_a_code_read_from_cells_that_do_not_show_it_is_no_marker(number) -> None:
     assert MarkerDetector({"DICT_4X4_1000": ()}).search(mirrored(number)) == []
+
+
+@pytest.mark.parametrize("cells", [4, 5, 6, 7])
+def test_a_marker_is_read_while_at_most_a_tenth_of_its_border_is_white(cells: int) -> None:
+    candidate_family, cell_px, at = family(f"DICT_{cells}X{cells}_50"), 20, 20.0
+    side_px, border_cells = (cells + 2) * cell_px, 4 * (cells + 1)
+    corners_px = at - 0.5 + np.array([[[0, 0], [side_px, 0], [side_px, side_px], [0, side_px]]], dtype=float)
+    read = []
+    for white in range(5):
+        pattern = candidate_family.patterns[3].copy()
+        pattern[0, 1 : 1 + white] = True
+        pixels = np.where(np.kron(pattern, np.ones((cell_px, cell_px))) > 0, PAPER, DARK).astype(np.uint8)
+        pixels = cv2.copyMakeBorder(pixels, *[int(at)] * 4, cv2.BORDER_CONSTANT, value=PAPER)
+        read.append([each.id for each in decode(pixels, [Candidates(candidate_family, corners_px, corners_px)])])
+    assert read == [[3] if 10 * white <= border_cells else [] for white in range(5)]
