@@ -7,6 +7,7 @@ import pytest
 from marker_tracker.detection.decoding import Candidates, decode
 from marker_tracker.detection.detector import MarkerDetector
 from marker_tracker.detection.families import family
+from marker_tracker.detection.quads import OUTLINE_PX, inner_squares
 
 SIDE, CELLS = 96, 6
 DARK, PAPER = 30, 200
@@ -54,3 +55,20 @@ def test_a_marker_is_read_while_at_most_a_tenth_of_its_border_is_white(cells: in
         pixels = cv2.copyMakeBorder(pixels, *[int(at)] * 4, cv2.BORDER_CONSTANT, value=PAPER)
         read.append([each.id for each in decode(pixels, [Candidates(candidate_family, corners_px, corners_px)])])
     assert read == [[3] if 10 * white <= border_cells else [] for white in range(5)]
+
+
+@pytest.mark.parametrize("turn_deg", range(0, 90, 5))
+def test_the_marker_on_a_card_is_found_where_the_cards_outline_extends_onto_what_is_behind_it(turn_deg: int) -> None:
+    """It may extend twice as far as OpenCV's does."""
+    turn = np.exp(1j * np.radians(turn_deg + np.array([45, 135, 225, 315]))) * np.sqrt(2)
+    whole, inner, seen = (
+        np.column_stack([100 + half_px * turn.real, 100 + half_px * turn.imag])
+        for half_px in (70, 40, 70 + 2 * OUTLINE_PX)
+    )
+    pixels = np.full((200, 200), DARK, dtype=np.uint8)
+    for corners_px, level in ((whole, PAPER), (inner, DARK)):
+        cv2.fillConvexPoly(pixels, np.round(corners_px * 16).astype(np.int32), level, cv2.LINE_AA, 4)
+    (marker,) = inner_squares(pixels, seen[None])
+    distances = np.linalg.norm(marker[:, None] - inner[None], axis=2)
+    assert distances.min(axis=1).max() < 2.5
+    assert sorted(distances.argmin(axis=1)) == [0, 1, 2, 3]
