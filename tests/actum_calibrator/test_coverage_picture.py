@@ -13,6 +13,7 @@ from actum_calibrator.coverage_picture import (
     OUTLINE,
     TOP,
     WIDTH,
+    Drawing,
     coverage_picture,
 )
 from actum_calibrator.intrinsics import Intrinsics, estimate_intrinsics
@@ -27,6 +28,25 @@ def estimated(size: tuple[int, int], residuals_px: np.ndarray) -> Intrinsics:
     matrix = np.array([[600.0, 0.0, 320.0], [0.0, 600.0, 240.0], [0.0, 0.0, 1.0]])
     uncovered = np.zeros(CELLS[::-1], dtype=bool)
     return Intrinsics(size, matrix, np.zeros(5), 0.5, np.ones(4), [residuals_px], [20.0], uncovered)
+
+
+@pytest.mark.parametrize(
+    ("draw", "bounds"),
+    [
+        (lambda drawing: drawing.box(40, 30, 80, 50, CORNER), (40, 30, 80, 50)),
+        (lambda drawing: drawing.dot(60, 40, 8, CORNER), (52, 32, 68, 48)),
+        (lambda drawing: drawing.line([(40, 30), (80, 50)], CORNER), (40, 30, 80, 50)),
+        (lambda drawing: drawing.text(40, 30, "H" * 10, 20, CORNER), (41, 33, 183, 49)),
+    ],
+    ids=["box", "dot", "line", "text"],
+)
+def test_what_is_drawn_lies_within_its_pixels(draw, bounds: tuple[int, ...]) -> None:
+    drawing = Drawing(200, 100)
+    draw(drawing)
+    picture = cv2.imdecode(np.frombuffer(drawing.png(), dtype=np.uint8), cv2.IMREAD_GRAYSCALE)
+    assert picture is not None
+    rows, columns = np.nonzero(picture < 200)
+    assert (columns.min(), rows.min(), columns.max(), rows.max()) == pytest.approx(bounds, abs=2)
 
 
 @pytest.mark.parametrize(("residual_px", "magnification"), [(0.5, 20), (0.21, 100), (11.1, 1), (0.05, 200)])
