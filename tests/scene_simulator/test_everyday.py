@@ -39,13 +39,22 @@ def test_the_doings_are_those_beside_which_the_shipped_model_was_trained(
 ) -> None:
     """Where this fails on purpose, `make simulated-model` trains the model anew."""
     expected = (-0.2945127704, 0.2866991967, -0.6599391166)[request.node.callspec.params["idle"]]
-    numbers = np.concatenate([[*state.joints_m.ravel(), *state.positions_m.ravel()] for state in states])
-    assert numbers @ np.cos(np.arange(len(numbers))) == pytest.approx(expected, abs=1e-6)
+    assert number_of(states) == pytest.approx(expected, abs=1e-6)
 
 
 @pytest.fixture(scope="module")
 def busy() -> list[SceneState]:
     return list(Scene(balanced_programme(3, 4), 1, 4, everyday=Everyday()).states())
+
+
+def test_so_are_the_actions(busy: list[SceneState]) -> None:
+    assert number_of(busy) == pytest.approx(-0.0015993747, abs=1e-6)
+
+
+def number_of(states: list[SceneState]) -> float:
+    """Return a number that each coordinate of people and objects changes."""
+    numbers = np.concatenate([[*state.joints_m.ravel(), *state.positions_m.ravel()] for state in states])
+    return float(numbers @ np.cos(np.arange(len(numbers))))
 
 
 def all_of(simulator: Simulator) -> list[Message]:
