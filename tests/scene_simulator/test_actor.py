@@ -102,7 +102,7 @@ def test_pointing_puts_the_fingertip_on_the_line_from_the_eye(
     assert np.linalg.norm(tip - target) > 0.145
 
 
-@settings(max_examples=10)
+@settings(max_examples=3)
 @given(persons)
 def test_at_something_far_people_point_with_an_arm_that_is_not_quite_straight(actor: Actor) -> None:
     stance = standing(actor)
