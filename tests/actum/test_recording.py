@@ -179,6 +179,20 @@ def test_an_exception_leaves_a_readable_part(tmp_path: Path) -> None:
     assert len(list(Recording(tmp_path / "a.mcap.part").messages())) == 1
 
 
+@pytest.mark.parametrize("closed", [False, True])
+@pytest.mark.parametrize("deleted", [False, True])
+def test_a_discarded_recording_is_gone_even_where_somebody_else_deleted_it(
+    tmp_path: Path, closed: bool, deleted: bool
+) -> None:
+    recorder = Recorder(tmp_path / "a.mcap", person="1", source="test")
+    if closed:
+        recorder.close()
+    if deleted:
+        next(tmp_path.iterdir()).unlink()
+    recorder.discard()
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_what_was_written_before_a_crash_is_readable(tmp_path: Path) -> None:
     count = 3 * CHUNK_BYTES // len(codec.encode(skeleton(1)).payload)
     with Recorder(tmp_path / "a.mcap", person="1", source="test") as recorder:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from actum.calibration import Calibration, CalibrationError, IntrinsicsQuality
-from actum_calibrator.bundle_adjustment import compose, compose_with_jacobians, invert
+from actum_calibrator.bundle_adjustment import BundleAdjuster, CameraModel, compose, compose_with_jacobians, invert
 from actum_calibrator.extrinsics import estimate_extrinsics, with_extrinsics
 from actum_calibrator.pairs import Pair, PairingError, pair_files
 from actum_calibrator.view_set import PoorSetError
@@ -54,6 +54,17 @@ def test_the_true_transform_is_found(pairs: list[Pair], count: int) -> None:
     assert rotation_deg < 0.3
     assert position_mm < 4 * found.position_deviation_mm
     assert found.rms_px < 0.2
+
+
+def test_from_a_rough_start_the_adjustment_comes_to_the_same_transform(pairs: list[Pair]) -> None:
+    markers, people = CameraModel.of(MARKERS), CameraModel.of(PEOPLE)
+    true = np.concatenate([np.ravel(cv2.Rodrigues(TRUE[:3, :3])[0]), TRUE[:3, 3]])
+    boards = [markers.pose_candidates(pair.markers)[0] for pair in pairs]
+    adjuster = BundleAdjuster(markers, people, pairs, scale_px=1.0)
+    off = np.array([0.02, -0.02, 0.02, 0.01, -0.01, 0.01])
+    exact, rough = (adjuster.adjust(start, boards) for start in (true, true + off))
+    assert rough.people_from_markers == pytest.approx(exact.people_from_markers, abs=1e-6)
+    assert rough.rms_px == pytest.approx(exact.rms_px, abs=1e-6)
 
 
 def test_the_cameras_exchanged_give_the_inverse(pairs: list[Pair]) -> None:

@@ -1,5 +1,8 @@
 """The model that comes with actum, and whom the demo tests it on."""
 
+import json
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
@@ -9,6 +12,7 @@ from actum_command.simulated_model import SIMULATED_MODEL, TRAINERS, learned_fro
 from actum_model_trainer.progress import silent
 from scene_simulator.programme import ACTIONS
 from som_classifier.model_loading import load_model
+from som_classifier.presets import DEFAULT
 
 
 def test_the_model_finds_the_actions_of_the_simulated_scene_by_itself() -> None:
@@ -16,6 +20,10 @@ def test_the_model_finds_the_actions_of_the_simulated_scene_by_itself() -> None:
     assert {*model.metadata.labels} == {*ACTIONS}
     assert model.metadata.spotting is not None  # type: ignore[attr-defined]
     assert learned_from(model) == "90 actions of 9 simulated people"
+
+
+def test_the_model_was_trained_with_the_default_preset_as_it_is() -> None:
+    assert load_model(SIMULATED_MODEL).metadata.parameters == json.loads(json.dumps(asdict(DEFAULT)))
 
 
 @pytest.mark.long

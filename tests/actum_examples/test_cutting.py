@@ -157,6 +157,18 @@ def test_where_one_is_missing_the_place_where_two_may_have_run_together_is_named
     assert [doubt.text for doubt in doubts_of(course, activity, chain, asked, 0)] == doubts
 
 
+@pytest.mark.parametrize(
+    ("likeness", "doubted"), [([0.0], []), ([1.0, 0.0], [2]), ([0.0, 1.0, 1.0], [1]), ([1.0, 1.0], [])]
+)
+def test_a_repetition_that_is_unlike_the_others_is_doubted_where_there_are_others(
+    likeness: list[float], doubted: list[int]
+) -> None:
+    bursts = np.array([[30 * k, 30 * k + 20] for k in range(len(likeness))])
+    course = Course(1, 0, np.zeros((100, 15, 3)), np.zeros(100), np.zeros(15), 2.0)
+    doubts = doubts_of(course, np.ones(100), Chain(bursts, np.array(likeness), 1.0), None, 0)
+    assert [doubt.repetition for doubt in doubts] == doubted
+
+
 def test_what_cannot_be_found_is_told() -> None:
     cuts = cuts_of(five_waves(), asked=9)
     assert cuts.sureness <= 0.5

@@ -6,6 +6,7 @@ import pytest
 from actum.skeletons import INDEX
 from actum.som import Som
 from actum_model_inspector.arm_map import arm_joints, arm_map, arm_steps_m
+from actum_model_inspector.stick_figures import HEIGHT_M, laid_out
 from recognisers import tiny_samples
 from som_classifier.first_layer import VELOCITY_WEIGHT, arm_inputs, frame_inputs
 from som_classifier.kinematics import LAG_TIME_CONSTANT_S
@@ -22,6 +23,12 @@ def test_an_arm_hangs_from_the_shoulder_as_it_did() -> None:
         joints[:, ends] - joints[:, [SHOULDER]], POSTURES[:, ends] - POSTURES[:, [SHOULDER]], atol=1e-6
     )
     np.testing.assert_allclose(steps_m[:, ends], VELOCITIES[:, ends] - VELOCITIES[:, [SHOULDER]], atol=1e-6)
+
+
+def test_the_shoulder_is_drawn_at_the_height_of_the_middle_of_its_units_place() -> None:
+    shoulder = laid_out(arm_joints(UNITS), np.full((len(UNITS), 2), 5.0), 1.0)[:, SHOULDER]
+    assert shoulder[:, 1] == pytest.approx(5.0, abs=0.02)
+    assert shoulder[:, 0] == pytest.approx(5.0 - 0.1 / HEIGHT_M, abs=0.02)
 
 
 def test_nothing_but_the_arm_is_drawn_and_moves() -> None:

@@ -2,12 +2,21 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from matplotlib.collections import LineCollection
+from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.figure import Figure
 
 from actum.skeletons import INDEX, JOINTS, PARTS
 from actum.standard_body import BONES
-from actum_model_inspector.stick_figures import ONE_LIMB, STANDING, Pen, draw_figures, laid_out, projected
+from actum_model_inspector.stick_figures import (
+    HEAD_M,
+    HEIGHT_M,
+    ONE_LIMB,
+    STANDING,
+    Pen,
+    draw_figures,
+    laid_out,
+    projected,
+)
 from actum_model_inspector.style import LEFT, RIGHT
 from people import lacking
 
@@ -43,6 +52,15 @@ def test_a_figure_lies_within_its_place_feet_down() -> None:
     (laid,) = laid_out(STANDING[None], np.array([[3.0, 7.0]]), 1.0)
     assert np.abs(laid - [3.0, 7.0]).max() < 0.5
     assert laid[INDEX["left_foot"], 1] > laid[INDEX["head"], 1]
+
+
+@pytest.mark.parametrize("size", [1.0, 3.0])
+def test_a_head_is_drawn_in_the_figures_scale(size: float) -> None:
+    axes = Figure().add_subplot()
+    draw_figures(axes, STANDING[None], np.zeros((1, 2)), size)
+    (heads,) = (drawn for drawn in axes.collections if isinstance(drawn, EllipseCollection))
+    assert heads.get_widths() / size == pytest.approx(2 * HEAD_M / HEIGHT_M)
+    assert heads.get_heights() == pytest.approx(heads.get_widths())
 
 
 def test_every_bone_is_drawn_in_the_colour_of_its_side() -> None:

@@ -172,11 +172,11 @@ def test_a_segment_that_begins_where_no_frame_is_is_not_lost_when_a_stream_is_cu
 def test_a_stream_without_a_place_to_cut_is_cut_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sampling, "LONGEST_PIECE", 300)
     stream = taught().streams[0]
-    whole = replace(stream, segments=((int(stream.stamps_ns[0]), int(stream.stamps_ns[-1]), "lift"),))
-    cut = pieces(whole)
+    first_ns, cut_ns, last_ns = stream.stamps_ns[[0, 299, -1]].tolist()
+    cut = pieces(replace(stream, segments=((first_ns, last_ns, "lift"), (cut_ns, last_ns, "push"))))
     assert all(len(piece.stamps_ns) == 300 for piece in cut[:-1])
     assert sum(len(piece.stamps_ns) for piece in cut) == len(stream.stamps_ns)
-    assert [len(piece.segments) for piece in cut] == [1, *[0] * (len(cut) - 1)]
+    assert [len(piece.segments) for piece in cut] == [2, *[0] * (len(cut) - 1)]
 
 
 def test_a_short_stream_stays_as_it_is() -> None:

@@ -1,11 +1,13 @@
-"""How often an action is done in what a search finds, as training counts it."""
+"""How often an action is done in what a search finds, as training counts it, and what a search is worth."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from actum_model_trainer.continuous.detections import Detection, Found, Truth
-from actum_model_trainer.spotting.threshold_choice import precision
+from actum.node import SECOND_NS
+from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
+from actum_model_trainer.continuous.scoring import event_scores
+from actum_model_trainer.spotting.threshold_choice import precision, worth_of
 from performers import TINY
 
 PRIOR = TINY.prior
@@ -64,3 +66,15 @@ def test_few_segments_move_it_little_from_the_prior_and_many_leave_little_of_tha
     own = right / len(found) if found else 0.0
     assert counted == pytest.approx(weight * own + (1 - weight) * PRIOR.precision)
     assert 0.0 < counted <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("minutes", "alarms", "cost"),
+    [(10, 0, 0.0), (10, 5, 0.0), (10, 6, 0.01), (10, 25, 0.2), (1, 1, 0.05), (0.5, 1, 0.15), (0.4, 9, 0.0)],
+)
+def test_each_false_alarm_a_minute_costs_a_tenth_after_the_first_half(minutes: float, alarms: int, cost: float) -> None:
+    """Nothing costs anything where there is less than half a minute of background."""
+    seen = Stretch("file", 1, 0, round(minutes * 60 * SECOND_NS))
+    starts_ns = [round(k * 0.5 * SECOND_NS) for k in range(alarms)]
+    found = Found([Detection("file", 1, at, at + 1, at + 1, "lift", 1.0) for at in starts_ns], seen=[seen])
+    assert worth_of(event_scores(found)) == pytest.approx(-cost)

@@ -121,6 +121,17 @@ def test_frames_a_microsecond_apart_are_let_go_and_counted(
 
 
 @pytest.mark.parametrize("case", [CLASSIFIER, FUSION], ids=repr)
+def test_after_a_flood_nothing_more_is_let_go(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in ("som_classifier.streams.MOST_FRAMES", "action_fusion.intake.buffers.MOST_FRAMES"):
+        monkeypatch.setattr(module, 50)
+    node, sample = case.build(), first(case, Posture)
+    handled(node, (changed(sample, NOON_NS + i * 1000) for i in range(150)))
+    assert node.counters.rejects == {"too_many_frames": 100}
+    handled(node, (changed(sample, NOON_NS + 1000 * SECOND_NS + i * SECOND_NS // 30) for i in range(40)))
+    assert node.counters.rejects == {"too_many_frames": 100}
+
+
+@pytest.mark.parametrize("case", [CLASSIFIER, FUSION], ids=repr)
 def test_people_beyond_those_that_are_kept_are_counted(case: Case) -> None:
     node, sample = case.build(), first(case, Posture)
     people = (changed(sample, NOON_NS + i, agent=i, agents=[i]) for i in range(1, MOST_STREAMS + 11))

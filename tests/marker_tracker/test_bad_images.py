@@ -55,6 +55,16 @@ def test_a_size_that_the_calibration_cannot_be_of_is_counted(image) -> None:
     assert f"{image.width}x{image.height}" in answer.reason
 
 
+@pytest.mark.parametrize(("focal_px", "usable"), [(-1.0, False), (0.0, False), (0.5, True), (60.0, True)])
+def test_a_focal_length_has_to_be_above_zero(focal_px: float, usable: bool) -> None:
+    for at in (0, 4):
+        matrix = [60.0, 0.0, 32.0, 0.0, 60.0, 24.0, 0.0, 0.0, 1.0]
+        matrix[at] = focal_px
+        tracker = MarkerTracker(Settings())
+        tracker.handle(small(K=matrix))
+        assert tracker.counters.rejects == {"black_image" if usable else "bad_calibration": 1}
+
+
 def test_a_calibration_of_another_aspect_is_counted() -> None:
     tracker = MarkerTracker(Settings(calibrated_size_px=(64, 64)))
     (answer,) = tracker.handle(small())

@@ -102,6 +102,16 @@ def test_pointing_puts_the_fingertip_on_the_line_from_the_eye(
     assert np.linalg.norm(tip - target) > 0.145
 
 
+@settings(max_examples=3)
+@given(persons)
+def test_at_something_far_people_point_with_an_arm_that_is_not_quite_straight(actor: Actor) -> None:
+    stance = standing(actor)
+    hand = pointing_palm(actor, stance, RESTING[None], np.array([0.0, 0.0, 0.3]), np.zeros(2), stand_off_m=0.15)
+    joints = pose(actor, stance, hands_of(actor, hand))
+    reached = np.linalg.norm(fingertip(actor, joints)[0] - joints[0, INDEX[f"{actor.hand}_shoulder"]])
+    assert reached / (actor.arm_m + actor.finger_m) == pytest.approx(0.97, abs=0.01)
+
+
 def test_people_differ_and_the_same_seed_is_the_same_person() -> None:
     people = [draw_actor(PARAMETERS, seed) for seed in range(300)]
 

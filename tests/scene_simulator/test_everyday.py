@@ -20,9 +20,13 @@ FASTEST_M_S = {"hand": 3.0, "elbow": 3.5, "knee": 3.0, "foot": 5.0}
 FASTEST_TRUNK_M_S = 2.0
 
 
+SEEDS = (61, 62, 61)
+"""Of scenes of the actors 0, 1 and 2 that together show each kind of doing in each of its variations."""
+
+
 @pytest.fixture(scope="module", params=range(3))
 def idle(request: pytest.FixtureRequest) -> Scene:
-    return Scene([], request.param, request.param + 50, everyday=Everyday(least_s=300))
+    return Scene([], request.param, SEEDS[request.param], everyday=Everyday(least_s=300))
 
 
 @pytest.fixture(scope="module")
@@ -34,14 +38,23 @@ def test_the_doings_are_those_beside_which_the_shipped_model_was_trained(
     states: list[SceneState], request: pytest.FixtureRequest
 ) -> None:
     """Where this fails on purpose, `make simulated-model` trains the model anew."""
-    expected = (-0.0844212959, 0.3892009612, -1.4063052106)[request.node.callspec.params["idle"]]
-    numbers = np.concatenate([[*state.joints_m.ravel(), *state.positions_m.ravel()] for state in states])
-    assert numbers @ np.cos(np.arange(len(numbers))) == pytest.approx(expected, abs=1e-6)
+    expected = (-0.2945127704, 0.2866991967, -0.6599391166)[request.node.callspec.params["idle"]]
+    assert number_of(states) == pytest.approx(expected, abs=1e-6)
 
 
 @pytest.fixture(scope="module")
 def busy() -> list[SceneState]:
     return list(Scene(balanced_programme(3, 4), 1, 4, everyday=Everyday()).states())
+
+
+def test_so_are_the_actions(busy: list[SceneState]) -> None:
+    assert number_of(busy) == pytest.approx(-0.0015993747, abs=1e-6)
+
+
+def number_of(states: list[SceneState]) -> float:
+    """Return a number that each coordinate of people and objects changes."""
+    numbers = np.concatenate([[*state.joints_m.ravel(), *state.positions_m.ravel()] for state in states])
+    return float(numbers @ np.cos(np.arange(len(numbers))))
 
 
 def all_of(simulator: Simulator) -> list[Message]:

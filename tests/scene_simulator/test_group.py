@@ -1,8 +1,10 @@
 """Several people side by side in one stream."""
 
+from itertools import islice
+
 import pytest
 
-from actum.messages import Message, Skeleton, Truth
+from actum.messages import Image, Message, Skeleton, Truth
 from scene_simulator.everyday import Everyday
 from scene_simulator.group import Group
 from scene_simulator.programme import balanced_programme
@@ -54,6 +56,12 @@ def test_each_persons_actions_have_their_own_truths(frames: list[list[Message]])
         assert [truth.kind for truth in own] == ["start", "end"] * 2
         assert [truth.action for truth in own[::2]] == [task.action for task in programme]
     assert len({truth.segment_id for truth in truths}) == 8
+
+
+@pytest.mark.parametrize(("asked", "images"), [({}, 0), ({"image_hz": 10}, 10)])
+def test_there_are_as_many_images_a_second_as_asked_for_whoever_is_seen(asked: dict[str, int], images: int) -> None:
+    second = islice(Group(PROGRAMMES, **asked).frames(), 30)
+    assert sum(isinstance(message, Image) for messages in second for message in messages) == images
 
 
 @pytest.mark.parametrize("count", [0, 5])

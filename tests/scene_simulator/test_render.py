@@ -45,6 +45,32 @@ def true_corners(renderer: Renderer, state: SceneState, row: int) -> Array:
     return renderer.camera.project(CORNERS_M @ pose[:3, :3].T + pose[:3, 3])
 
 
+def test_the_pictures_are_those_on_which_the_benchmarks_were_measured(
+    scene: Scene, renderer: Renderer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where this fails on purpose, `make bench-objects bench-tracker` measure anew."""
+    numbers: list[float] = []
+
+    def recorded(name: str) -> None:
+        draw = getattr(cv2, name)
+
+        def drawing(*arguments: object) -> object:
+            for each in arguments[1:]:
+                values = np.asarray(each, dtype=float)
+                numbers.extend((values.mean(), np.sqrt((values**2).mean())))
+            return draw(*arguments)
+
+        monkeypatch.setattr(cv2, name, drawing)
+
+    for name in ("fillConvexPoly", "fillPoly", "polylines", "rectangle", "line", "circle"):
+        recorded(name)
+    Renderer(scene, random_stream("test"))
+    for state in list(scene.states())[::30]:
+        renderer.clean_image(state)
+    weights = np.random.default_rng(0).uniform(size=len(numbers))
+    assert np.array(numbers) @ weights == pytest.approx(9370179.471, abs=1.0)
+
+
 def test_uncovered_markers_are_found_where_they_are(scene: Scene, renderer: Renderer, free: list[SceneState]) -> None:
     found = 0
     for state in free:

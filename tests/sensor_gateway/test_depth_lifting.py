@@ -75,6 +75,14 @@ def test_colour_alone_is_twenty_centimetres_off_where_the_model_takes_the_person
     assert worst_cm(body, lifted(marks, LENS, depth(body))) < 2.2
 
 
+def test_somebody_nearer_than_a_metre_is_lifted_as_well() -> None:
+    body = person(at_m=(0.0, -0.1, 0.95))
+    marks = landmarks_of(body, LENS, model_size=1 / 1.1)
+
+    assert worst_cm(body, placed(marks, LENS)) > 5
+    assert worst_cm(body, lifted(marks, LENS, depth(body))) < 2.2
+
+
 @settings(max_examples=10)
 @given(seed=st.integers(0, 1000))
 def test_what_the_model_has_wrong_in_relative_distance_does_not_matter(seed: int) -> None:

@@ -159,6 +159,12 @@ def test_each_colour_image_gets_the_depth_nearest_in_time() -> None:
     assert together(depths, colors) is None
 
 
+@pytest.mark.parametrize(("later_us", "paired"), [(0, True), (16_667, True), (17_500, False)])
+def test_what_is_at_most_half_a_frame_apart_is_one_picture(later_us: int, paired: bool) -> None:
+    for sign in (-1, 1):
+        assert (together(frames(50_000), frames(50_000 + sign * later_us)) is not None) is paired
+
+
 def test_colour_waits_for_depth_that_comes_late() -> None:
     assert together(frames(0), frames(33_000, 66_000)) is None
     found = together(frames(0, 33_000), frames(33_000, 66_000))

@@ -238,3 +238,15 @@ def test_an_unplugged_camera_is_lost_at_once_and_a_silent_one_is_waited_for(monk
         capture.next(0.01)
     capture.close()
     assert fake.stopped
+
+
+def test_a_camera_that_was_silent_for_too_long_is_lost(monkeypatch: pytest.MonkeyPatch) -> None:
+    complete = [frames for frames in SoftwareCamera(rs).frame_sets(BODY, 4) if frames.size() == 2]
+    fake = FakeLibrary(complete[:1])
+    monkeypatch.setattr("sensor_gateway.devices.realsense.library", lambda: fake)
+    monkeypatch.setattr("sensor_gateway.devices.silence.SILENT_S", 0.0)
+    monkeypatch.setattr(RealSenseCapture, "_config", lambda *_: None)
+    capture = RealSenseCapture(now_ns=lambda: START_NS)
+    assert capture.next(0.01) is not None
+    with pytest.raises(CameraLostError, match="no picture"):
+        capture.next(0.01)

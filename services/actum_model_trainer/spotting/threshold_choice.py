@@ -64,7 +64,7 @@ def chosen_threshold(
     judged = [Judged.of(each, learned) for each in scanned]
     by_threshold = (found(judged, learned, labels, threshold) for threshold in thresholds)
     scores, precisions = zip(*((event_scores(own), precision(own, prior)) for own in by_threshold), strict=True)
-    worth = np.array([_worth(score) for score in scores])
+    worth = np.array([worth_of(score) for score in scores])
     smoothed = np.convolve(np.pad(worth, 1, mode="edge"), np.full(3, 1 / 3), mode="valid")
     counted = scores[0].background_min >= SHORTEST_BACKGROUND_MIN
     rates = [score.alarms_per_min or 0.0 for score in scores] if counted else []
@@ -160,7 +160,8 @@ def false_alarms(
     return alarms
 
 
-def _worth(score: EventScores) -> float:
+def worth_of(score: EventScores) -> float:
+    """Return what a search is worth: F1 twice, of events and of overlaps, less the cost of false alarms."""
     false = 0.0
     if score.background_min >= SHORTEST_BACKGROUND_MIN and score.alarms_per_min is not None:
         false = max(score.alarms_per_min - BEARABLE_PER_MIN, 0.0)
