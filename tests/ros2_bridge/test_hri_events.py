@@ -123,7 +123,7 @@ def test_gestures_and_intents_are_those_of_the_messages() -> None:
         ("gestures: {wave: {gesture: WAVE}}", "gestures.wave.gesture: 'WAVE' is not a gesture of hri_msgs: use one of"),
         ("intents: {wave: {intent: HUG}}", "intents.wave.intent: 'HUG' is not an intent of hri_actions_msgs"),
         ("intents: {wave: {intent: GREET, object: '{cup}'}}", "{cup} is not a placeholder: use {person}, {object}"),
-        ("intents: {wave: {intent: GREET, object: '{'}}", "intents.wave.object: '{' cannot be used"),
+        ("intents: {wave: {intent: GREET, object: '{'}}", "intents.wave.object: the text '{' is not a format string"),
         ("intents: {wave: {intent: GREET, whom: you}}", "intents.wave.whom: Extra inputs are not permitted"),
         ("gesture: {}", "gesture: Extra inputs are not permitted"),
         ("", "the file: Input should be a valid dictionary"),

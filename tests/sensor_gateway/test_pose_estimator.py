@@ -56,7 +56,7 @@ def test_a_missing_model_is_told_with_the_command_that_gets_it(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("error", "told"),
     [
-        (PermissionError("Unable to open file at pose.task"), "cannot be read by this user"),
+        (PermissionError("Unable to open file at pose.task"), "cannot be read by the current user"),
         (FileNotFoundError("No file with name: pose_detector.tflite"), "is not a pose model .*'actum models fetch'"),
         (OSError("libGLESv2.so.2: cannot open shared object file"), "apt install libegl1 libgles2"),
     ],
