@@ -92,8 +92,8 @@ class Settings(RememberingSettings):
         0.25,
         gt=0,
         description=(
-            "maximum distance (m) between a hand and the object of an action other than pointing. For an object that "
-            "moves during the action, the maximum is larger by --grasp-m: a tool in the hand can have moved the object"
+            "maximum distance (m) between a hand and the object of an action other than pointing. --grasp-m is added "
+            "for an object that moves during the action, because the person can move the object with a tool"
         ),
     )
     grasp_m: float = Field(
@@ -140,10 +140,9 @@ class Settings(RememberingSettings):
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
-            "for each action, the result that is expected for the object, such as lift=lifted,push=pushed. Events say "
-            "whether the expected result occurred. The list has a second effect: in the actions that it contains, an "
-            "object in the hand is never taken for a tool. In all other actions, the object in the hand can be a tool. "
-            "If it is a tool, events name the object on which the person uses the tool"
+            "the result that is expected of each action for its object, such as lift=lifted,push=pushed. Events say "
+            "whether the expected result occurred. Only in actions without an expected result can an object in the hand "
+            "count as a tool; events then name the object on which the person uses the tool"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(

@@ -40,9 +40,9 @@ def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
         files = [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
         if stray := next((file.name for file in files if not file.stem.endswith(SUFFIXES)), None):
             raise PairingError(
-                f"the name of the picture {stray} ends neither in _a nor in _b: name the pictures of the camera that "
-                "sees the markers NAME_a, and those of the camera that sees the people NAME_b. Or give one folder per "
-                "camera"
+                f"the name of the picture {stray} ends neither in _a nor in _b: let _a end the names of the pictures "
+                "from the camera that sees the markers, and _b those from the camera that sees the people. Or give one "
+                "folder per camera"
             )
         sides = [_by_name([f for f in files if f.stem.endswith(end)], lambda f: f.stem[:-2]) for end in SUFFIXES]
     if alone := sorted(set(sides[0]) ^ set(sides[1])):
@@ -63,8 +63,8 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     for file in files:
         if name_of(file) in named:
             raise PairingError(
-                f"{named[name_of(file)]} and {file} have the same name, but each name can stand for one picture of a "
-                "camera only: delete or rename one of the two files"
+                f"{named[name_of(file)]} and {file} differ only in folder or file type, so it is not clear which of them "
+                "belongs to the other camera's picture: delete or rename one of the two files"
             )
         named[name_of(file)] = file
     return named

@@ -46,9 +46,7 @@ class MapContinuation(Continuation):
         units, shares = self.association.changes.shape[1], (2, len(STEPS))
         if units != len(self.som.weights) or self.shares.shape != shares or not np.isfinite(self.shares).all():
             raise ValueError(
-                f"the model's arrays for predicting postures do not fit its map: they have {units} units and weights "
-                f"of the shape {self.shares.shape}, but the map has {len(self.som.weights)} units and needs finite "
-                f"weights of the shape {shares}. Train the model again"
+                "the model's arrays for predicting postures are damaged or belong to another map: train the model again"
             )
 
     @classmethod

@@ -68,7 +68,9 @@ def scaled(joints: Array) -> Array:
     bones, lengths2 = bones_of(joints)
     lengths = np.sqrt(lengths2)
     if np.fmin.reduce(lengths) < SMALLEST_M:
-        raise DegenerateError("two joints that a bone connects are at the same position, so the bone has no direction")
+        raise DegenerateError(
+            "two neighbouring joints of the skeleton are at the same position: send it without one of them"
+        )
     standard = bones * (_LENGTHS_M / lengths)[:, None]
     from_torso = _positions_where_known(standard) if has_unknown(lengths) else _PATHS @ standard
     result: Array = joints[INDEX["torso"]] + from_torso

@@ -58,9 +58,9 @@ def watch(
     On a terminal, a line at the bottom also shows each person's ongoing action and its completeness. With --from, the
     command prints the messages of recordings instead, even of a file that 'actum record --events' is still writing.
 
-    Most messages on the topic 'intent' (the objects that a hand reaches for) repeat the one before. So the command
-    prints only those in which the likeliest object changes, this object's probability first reaches 0.5 or 0.9, or
-    the reach ends; with --json, it prints all.
+    A message on the topic 'intent' (the objects that a hand reaches for) is printed only if the likeliest object
+    changes, if the probability of this object rises above 0.5 or 0.9 for the first time, or if the hand's movement
+    ends. With --json, all these messages are printed.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):
