@@ -141,8 +141,8 @@ class Settings(RememberingSettings):
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
             "the result that is expected of each action for its object, such as lift=lifted,push=pushed. Events say "
-            "whether the expected result occurred. Only in actions without an expected result can an object in the hand "
-            "count as a tool; events then name the object on which the person uses the tool"
+            "whether the expected result occurred. Only in actions without an expected result can an object in the "
+            "hand count as a tool; events then name the object on which the person uses the tool"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(
