@@ -1354,15 +1354,19 @@ static PyObject *exceeding(PyObject *module, PyObject *args)
     Py_ssize_t filters = b[5].len / (Py_ssize_t)sizeof(float), of_each = b[6].len / (Py_ssize_t)sizeof(float) / filters;
     Py_ssize_t kernel_count = b[1].len / weights;
     int instants = (int)(b[4].len / 4 / filters);
-    if (instants > MOST_INSTANTS)
+    if (instants > MOST_INSTANTS) {
         PyErr_SetString(PyExc_ValueError, "more instants than the compiled step has room for");
-    for (Py_ssize_t f = 0; f < filters && !PyErr_Occurred(); f++) {
+        return released(b, 7);
+    }
+    Py_BEGIN_ALLOW_THREADS
+    for (Py_ssize_t f = 0; f < filters; f++) {
         respond(inputs + f * instants, kernels + f % kernel_count * weights, weights, dilations[f / kernel_count], instants,
                 response);
         for (Py_ssize_t n = 0; n < of_each; n++)
             out[f * of_each + n]
                 = (float)count_above(response, biases[f * of_each + n], counted + f * instants, instants) / counts[f];
     }
+    Py_END_ALLOW_THREADS
     return released(b, 7);
 }
 
