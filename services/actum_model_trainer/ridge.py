@@ -36,7 +36,7 @@ def ridge(vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> 
 def ridges_of_first_and_all(
     vectors: NDArray[np.float32], indicators: Array, count: int, shrinkage: float
 ) -> tuple["DualRidge | PrimalRidge", "DualRidge | PrimalRidge"]:
-    """Fit the first so many vectors alone, and all, by one matrix of inner products where they are fewer than inputs."""
+    """Fit the first vectors alone, and all: by one matrix of inner products where these are fewer than inputs."""
     if len(vectors) > vectors.shape[1]:
         return ridge(vectors[:count], indicators[:count], shrinkage), ridge(vectors, indicators, shrinkage)
     form = DualForm.of(vectors, shrinkage)
@@ -106,8 +106,8 @@ class DualRidge:
     def held_out(self, folds: Sequence[Indices]) -> list[Array]:
         """Return the scores (rows, actions) of each of some folds by a regression that was fitted to all other rows.
 
-        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted. What a fold's
-        rows indicate is left out to the last bit: it is 0 in the fold's own columns of the product for all folds.
+        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted. What a
+        fold's rows indicate is left out to the last bit: it is 0 in the fold's own columns of the product for all.
         """
         intercepts, targets = [], []
         for rows in folds:
