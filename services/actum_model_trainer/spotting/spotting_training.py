@@ -18,7 +18,6 @@ from actum_model_trainer.kept import KeptWindows, pooled_basis
 from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import digest_of_streams
 from actum_model_trainer.samples import LabelledStream
-from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.spotting.common_head import mixed, mixed_heads
 from actum_model_trainer.spotting.heads_training import Folds, window_rows
 from actum_model_trainer.spotting.logistic_regression import logistic_fit
@@ -119,12 +118,10 @@ def _chosen(
     answered: Sequence[ScannedStream], untuned: SpottingModel, labels: Sequence[str], preset: PyramidPreset
 ) -> tuple[float, ThresholdChoice]:
     """Choose the common head's share, and with it the threshold, by what is found in streams of people left out."""
-
-    def choice(share: float) -> tuple[float, ThresholdChoice]:
-        mixture = _mixed(answered, share)
-        return share, chosen_threshold(mixture, untuned, labels, preset.spotting.thresholds, preset.prior)
-
-    choices = side_by_side(choice, preset.spotting.common_shares)
+    choices = [
+        (share, chosen_threshold(_mixed(answered, share), untuned, labels, preset.spotting.thresholds, preset.prior))
+        for share in preset.spotting.common_shares
+    ]
     return max(choices, key=lambda choice: choice[1].worth)
 
 
