@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from actum_model_trainer.augmentation import augmentation_for, variants
 from actum_model_trainer.basis import Basis
+from actum_model_trainer.convolution_training import features_of
 from actum_model_trainer.gathering import series_of
 from actum_model_trainer.kept import KeptWindows, kept_arrays, kept_data, pooled_basis
 from actum_model_trainer.layers_above import fitted_model
@@ -105,9 +106,9 @@ class _Measured:
         pooling = Pooling(model.first, model.pyramid, mirrors)
         stages = pooling.vectors(samples, augmented, preset.stages, beside=len(before.labels))
         everything = len(before.labels) + len(samples)
-        features = [convolutions.features(each) for each in series_of(samples, augmented, preset, everything)]
+        features = features_of(convolutions, series_of(samples, augmented, preset, everything))
         measures = SampleMeasures.of(samples, model.first, [of_sample[0].postures for of_sample in augmented])
-        return cls(measures, stages, np.stack(features))
+        return cls(measures, stages, features)
 
 
 def _joined(before: TrainingData, new: _Measured) -> TrainingData:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from actum.arrays import Array, Mask
+from actum.arrays import Array, Indices, Mask
 from actum.skeletons import JOINTS
 from actum.standard_body import BONES
 from actum_model_trainer.samples import SegmentSample
@@ -50,8 +50,8 @@ class Variant:
         """Its mirror image, left and right exchanged."""
         return Variant((mirrored(self.postures), mirrored(self.velocities)))
 
-    def some(self, frames: Mask) -> "Variant":
-        """Return some of its frames (n,)."""
+    def some(self, frames: Mask | Indices) -> "Variant":
+        """Return some of its frames, by a mask (n,) or by their numbers."""
         return replace(self, measured=(self.measured[0][frames], self.measured[1][frames]))
 
     def _changed(self, vectors: Array) -> Array:

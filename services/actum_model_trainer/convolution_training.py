@@ -7,8 +7,12 @@ import numpy as np
 
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.discriminants import Discriminants
+from actum_model_trainer.products import blocks
+from actum_model_trainer.side_by_side import side_by_side
 from som_classifier.convolutions import COORDINATES, FILTERS, WEIGHTS, Convolutions, Floats32
 
+AT_ONCE = 128
+"""Sequences that are convolved one after the other, beside others."""
 GOLDEN = (np.sqrt(5) - 1) / 2
 """Multiples of it modulo 1 are spread evenly over quantiles, however many there are."""
 
@@ -24,9 +28,9 @@ def drawn_convolutions(series: Sequence[Floats32], biases: int, rng: np.random.G
         of_filter[rng.choice(COORDINATES, count, replace=False)] = 1
     unbiased = Convolutions(coordinates, np.zeros((FILTERS, 0), np.float32))
     shown = rng.integers(len(series), size=FILTERS)
-    responses = {number: unbiased.responses(series[number]) for number in np.unique(shown).tolist()}
+    responses = unbiased.responses_each([series[number] for number in shown.tolist()])
     quantiles = (GOLDEN * np.arange(1, FILTERS * biases + 1) % 1).reshape(FILTERS, biases)
-    drawn = [np.quantile(responses[number][row], quantiles[row]) for row, number in enumerate(shown.tolist())]
+    drawn = [np.quantile(*each) for each in zip(responses, quantiles, strict=True)]
     return Convolutions(coordinates, np.array(drawn, np.float32).reshape(FILTERS, biases))
 
 
@@ -59,11 +63,10 @@ class Convolved:
     ) -> "Convolved":
         """Draw convolutions for resampled sequences, as the classifier reads them, and apply them."""
         convolutions = drawn_convolutions(taught, biases, rng)
-        features = np.stack([convolutions.features(each) for each in taught])
+        features = features_of(convolutions, taught)
         spread = features.std(axis=0)
         spread[np.ptp(features, axis=0) == 0] = 1.0  # rounding makes the deviation of some constants 3e-8
-        beside = np.array([convolutions.features(each) for each in background], np.float32)
-        return cls(convolutions, spread, features / spread, beside.reshape(-1, len(spread)) / spread)
+        return cls(convolutions, spread, features / spread, features_of(convolutions, background) / spread)
 
     def in_basis(self, basis: Basis) -> "Convolved":
         """Return coordinates in the place of features."""
@@ -73,3 +76,15 @@ class Convolved:
     def axes(self, fitted: Discriminants) -> Floats32:
         """Return the axes for features as they are of discriminants that were fitted to these."""
         return (fitted.axes / self.spread[:, None]).astype(np.float32)
+
+
+def features_of(convolutions: Convolutions, series: Sequence[Floats32]) -> Floats32:
+    """Return the features of sequences, (n, features)."""
+    features = np.empty((len(series), convolutions.biases.size), np.float32)
+
+    def compute(rows: slice) -> None:
+        for number in range(rows.start, rows.stop):
+            features[number] = convolutions.features(series[number])
+
+    side_by_side(compute, blocks(len(series), AT_ONCE))
+    return features

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from actum.arrays import Array, Indices
 from actum_model_trainer.basis import Basis
-from actum_model_trainer.ridge import DualRidge, PrimalRidge, ridge
+from actum_model_trainer.ridge import DualRidge, PrimalRidge, ridge, ridges_of_first_and_all
 
 FOLDS_WITHIN_AN_ACTION = 5  # of an action that one person alone did
 MAX_PERSON_FOLDS = 10  # more people share folds: each fold costs a linear solve, and more folds change little
@@ -81,11 +81,7 @@ def folds_of(people: Sequence[str], labels: Sequence[str]) -> Indices:
 
 
 def fit_discriminants(
-    vectors: NDArray[np.float32],
-    indicators: Array,
-    folds: Indices,
-    shrinkage: float,
-    background: NDArray[np.float32] | None = None,
+    vectors: NDArray[np.float32], indicators: Array, folds: Indices, shrinkage: float
 ) -> Discriminants:
     """Fit scores = vectors · axes + offsets to indicators, minimising squared error + penalty × ‖axes‖².
 
@@ -94,13 +90,35 @@ def fit_discriminants(
         indicators: (n, actions), 1 for the action done, else 0.
         folds: (n,), from `folds_of`.
         shrinkage: relative penalty.
+    """
+    return _scored(ridge(vectors, indicators, shrinkage), indicators, folds)
+
+
+def fit_without_and_with(
+    vectors: NDArray[np.float32],
+    indicators: Array,
+    folds: Indices,
+    shrinkage: float,
+    background: NDArray[np.float32],
+) -> list[Discriminants]:
+    """Fit the same, and discriminants that hold the vectors against background, too.
+
+    Args:
+        vectors: (n, inputs).
+        indicators: (n, actions).
+        folds: (n,).
+        shrinkage: relative penalty.
         background: (m, inputs), vectors of movement that is none of the actions: all their indicators are 0.
     """
-    count = len(vectors)
-    if background is not None:
-        vectors = np.concatenate([vectors, background])
-        indicators = np.concatenate([indicators, np.zeros((len(background), indicators.shape[1]))])
-    fitted = ridge(vectors, indicators, shrinkage)
+    every = np.concatenate([vectors, background])
+    padded = np.concatenate([indicators, np.zeros((len(background), indicators.shape[1]))])
+    without, beside = ridges_of_first_and_all(every, padded, len(vectors), shrinkage)
+    return [_scored(without, indicators, folds), _scored(beside, padded, folds)]
+
+
+def _scored(fitted: DualRidge | PrimalRidge, indicators: Array, folds: Indices) -> Discriminants:
+    """Return fitted discriminants with the scores that they give; rows beyond the n folds are background."""
+    count = len(folds)
     return Discriminants(
         fitted.axes,
         fitted.offsets,
@@ -117,19 +135,18 @@ def _cross_validated(fitted: DualRidge | PrimalRidge, indicators: Array, folds: 
     Rows beyond the n folds are background, which is fitted to in every fold.
     """
     scores, every = fitted.scores[: len(folds)].copy(), indicators.sum(axis=0)
-    for fold in np.unique(folds):
-        held_out = np.flatnonzero(folds == fold)
+    each = [np.flatnonzero(folds == fold) for fold in np.unique(folds)]
+    for held_out, of_fold in zip(each, fitted.held_out(each), strict=True):
         fitted_actions = np.flatnonzero(every > indicators[held_out].sum(axis=0))
         scorable = indicators[np.ix_(held_out, fitted_actions)].any(axis=1)
-        if scorable.any():
-            scores[held_out[scorable]] = fitted.held_out(held_out)[scorable]
+        scores[held_out[scorable]] = of_fold[scorable]
     return scores
 
 
 def _untaught(fitted: DualRidge | PrimalRidge, indicators: Array, count: int) -> Array:
     """Return the scores (count, actions) of the first rows by discriminants that were fitted without their action."""
     scores = np.zeros((count, indicators.shape[1]))
-    for of_action in indicators[:count].T:
-        held_out = np.flatnonzero(of_action)
-        scores[held_out] = fitted.held_out(held_out)
+    each = [np.flatnonzero(of_action) for of_action in indicators[:count].T]
+    for held_out, of_action in zip(each, fitted.held_out(each), strict=True):
+        scores[held_out] = of_action
     return scores

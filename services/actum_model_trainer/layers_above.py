@@ -10,7 +10,7 @@ from actum.arrays import Array
 from actum_model_trainer.basis import Basis, Floats32
 from actum_model_trainer.confidence import body_movement, inverse_temperatures
 from actum_model_trainer.convolution_training import Convolved, blended
-from actum_model_trainer.discriminants import Discriminants, FittedStage, fit_discriminants
+from actum_model_trainer.discriminants import Discriminants, FittedStage, fit_discriminants, fit_without_and_with
 from actum_model_trainer.gathering import Taught, gathered
 from actum_model_trainer.kept import kept_arrays
 from actum_model_trainer.pooling import PooledVectors
@@ -96,30 +96,30 @@ def fitted_model(
 
 def _discriminants(data: TrainingData, preset: PyramidPreset, progress: Progress) -> list[Discriminants]:
     """Fit the discriminants of each stage, the second opinion's, and the verifier's on the maps and on convolutions."""
-    indicators, last, convolved = np.eye(len(data.labels)), data.stages[-1], data.convolved
+    indicators, (*earlier, last), convolved = np.eye(len(data.labels)), data.stages, data.convolved
     on_maps, on_convolutions = (
         (preset.shrinkage, data.pooled_basis),
         (preset.convolutions.shrinkage, data.convolved_basis),
     )
-    features = last._replace(vectors=convolved.taught)
 
-    def fitted(rows: tuple[PooledVectors, Floats32 | None, float, Basis | None]) -> Discriminants:
+    def fitted(rows: tuple[PooledVectors, Floats32 | None, float, Basis | None]) -> list[Discriminants]:
         pooled, background, shrinkage, basis = rows
         samples = pooled.sample_indices
-        of_rows = indicators[data.targets[samples]], data.folds[samples]
-        return fit_discriminants(pooled.vectors, *of_rows, shrinkage, background).through(basis)
+        of_rows = pooled.vectors, indicators[data.targets[samples]], data.folds[samples], shrinkage
+        found = [fit_discriminants(*of_rows)] if background is None else fit_without_and_with(*of_rows, background)
+        return [each.through(basis) for each in found]
 
-    return side_by_side(
+    *of_earlier, (of_last, by_maps), (of_opinion, by_convolutions) = side_by_side(
         fitted,
         [
-            *((stage, None, *on_maps) for stage in data.stages),
-            (features, None, *on_convolutions),
+            *((stage, None, *on_maps) for stage in earlier),
             (last, data.background, *on_maps),
-            (features, convolved.background, *on_convolutions),
+            (last._replace(vectors=convolved.taught), convolved.background, *on_convolutions),
         ],
         "discriminant axes",
         progress,
     )
+    return [*(of_stage for (of_stage,) in of_earlier), of_last, of_opinion, by_maps, by_convolutions]
 
 
 def _with_opinion(

@@ -1,12 +1,13 @@
 """Training of the default recogniser: the first maps, and the layers above them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Floats
+from actum.arrays import Floats, Indices
 from actum.som import Som
 from actum_model_trainer.augmentation import Variant
 from actum_model_trainer.gathering import Taught
@@ -24,7 +25,7 @@ from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 
 MAX_ROWS = 20_000  # per map of the first layer: some 60 for each of its 324 units
-MOST_FRAMES = 400_000  # of variants that these rows are drawn from: each takes a kilobyte meanwhile
+MOST_FRAMES = 400_000  # of variants that these rows are drawn from, about
 
 
 def train(
@@ -82,17 +83,22 @@ def _moved(model: PyramidModel, kept: Arrays, above: PyramidModel) -> Arrays:
         return NOTHING_KEPT
 
 
-def _some(taught: Taught) -> list[Variant]:
+def _some(taught: Taught) -> list[Sequence[Variant]]:
     """Return the variants of as many samples, spread evenly over the actions, as have about `MOST_FRAMES` frames."""
     frames = sum(len(of_sample) * len(of_sample[0].measured[0]) for of_sample in taught.augmented)
-    return [variant for number in taught.every(-(-frames // MOST_FRAMES)) for variant in taught.augmented[number]]
+    return [taught.augmented[number] for number in taught.every(-(-frames // MOST_FRAMES))]
 
 
 def _first_maps(
-    augmented: Sequence[Variant], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
+    augmented: Sequence[Sequence[Variant]], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> FirstMaps:
-    frames = np.concatenate([frame_inputs(variant.postures, variant.velocities) for variant in augmented])
-    rows = {name: _training_rows(inputs_of(frames), rng) for name, inputs_of in MAP_INPUTS.items()}
+    drawn = {name: _drawn(augmented, inputs_of, rng) for name, inputs_of in MAP_INPUTS.items()}
+    numbers = np.unique(np.concatenate(list(drawn.values())))
+    frames = _frames(list(chain(*augmented)), numbers)
+    rows = {
+        name: _training_rows(inputs_of(frames[np.searchsorted(numbers, drawn[name])]))
+        for name, inputs_of in MAP_INPUTS.items()
+    }
 
     def trained(name: str) -> tuple[Som, float]:
         som = Som.linear(*preset.units, rows[name]).train_batch(rows[name], preset.unit_epochs, preset.unit_radius)
@@ -104,14 +110,33 @@ def _first_maps(
     return FirstMaps(maps, contrasts, preset.arm_shares)
 
 
-def _training_rows(inputs: Floats, rng: np.random.Generator) -> NDArray[np.float32]:
-    """Return inputs (n, dim) as rows of float32 without those that are wholly missing, at most `MAX_ROWS` drawn evenly.
+def _drawn(
+    augmented: Sequence[Sequence[Variant]], inputs_of: Callable[[Floats], Floats], rng: np.random.Generator
+) -> Indices:
+    """Return the numbers of at most `MAX_ROWS` frames of all variants, drawn evenly of those with inputs of a map.
+
+    A variant lacks what is missing in the sample as measured.
+    """
+    seen = [~np.isnan(inputs_of(frame_inputs(*of_sample[0].measured))).all(axis=1) for of_sample in augmented]
+    known = np.flatnonzero(np.concatenate([np.tile(own, len(of)) for own, of in zip(seen, augmented, strict=True)]))
+    return known if len(known) <= MAX_ROWS else known[rng.choice(len(known), MAX_ROWS, replace=False)]
+
+
+def _frames(variants: Sequence[Variant], numbers: Indices) -> Floats:
+    """Return the `frame_inputs` (n, 90) of some of all variants' frames, by their numbers (n,), which rise."""
+    ends = np.cumsum([len(variant.measured[0]) for variant in variants])
+    own = np.split(numbers, np.searchsorted(numbers, ends[:-1]))
+    some = [
+        variant.some(frames - end + len(variant.measured[0]))
+        for variant, frames, end in zip(variants, own, ends.tolist(), strict=True)
+    ]
+    return np.concatenate([frame_inputs(variant.postures, variant.velocities) for variant in some])
+
+
+def _training_rows(inputs: Floats) -> NDArray[np.float32]:
+    """Return inputs (n, dim) as rows of float32, at least one.
 
     A component that is missing in all of them becomes 0: it is then the same for all units and decides nothing.
     """
-    known = np.flatnonzero(~np.isnan(inputs).all(axis=1))
-    if not len(known):
-        return np.zeros((1, inputs.shape[1]), np.float32)
-    drawn = known if len(known) <= MAX_ROWS else known[rng.choice(len(known), MAX_ROWS, replace=False)]
-    rows = inputs[drawn].astype(np.float32)
+    rows = inputs.astype(np.float32) if len(inputs) else np.zeros((1, inputs.shape[1]), np.float32)
     return np.where(np.isnan(rows).all(axis=0), np.float32(0), rows)

@@ -5,6 +5,7 @@ same up to rounding: the dual one for fewer vectors than inputs, the primal one 
 anew where rows are left out.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -27,8 +28,19 @@ def ridge(vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> 
         indicators: (n, actions).
         shrinkage: the penalty, in units of the mean squared length of the centred vectors.
     """
-    form = DualRidge if len(vectors) <= vectors.shape[1] else PrimalRidge
-    return form(vectors, indicators, shrinkage)
+    if len(vectors) <= vectors.shape[1]:
+        return DualRidge(DualForm.of(vectors, shrinkage), indicators)
+    return PrimalRidge(vectors, indicators, shrinkage)
+
+
+def ridges_of_first_and_all(
+    vectors: NDArray[np.float32], indicators: Array, count: int, shrinkage: float
+) -> tuple["DualRidge | PrimalRidge", "DualRidge | PrimalRidge"]:
+    """Fit the first vectors alone, and all: by one matrix of inner products where these are fewer than inputs."""
+    if len(vectors) > vectors.shape[1]:
+        return ridge(vectors[:count], indicators[:count], shrinkage), ridge(vectors, indicators, shrinkage)
+    form = DualForm.of(vectors, shrinkage)
+    return DualRidge(form.of_first(count, shrinkage), indicators[:count]), DualRidge(form, indicators)
 
 
 class DualForm(NamedTuple):
@@ -50,11 +62,26 @@ class DualForm(NamedTuple):
     def of(cls, vectors: NDArray[np.float32], shrinkage: float) -> "DualForm":
         """Multiply vectors (n, inputs) less their mean; the penalty is `shrinkage` times their mean squared length."""
         mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
-        products = inner_products(without_mean(vectors, mean))
+        return cls._penalised(vectors, mean, inner_products(without_mean(vectors, mean)), shrinkage)
+
+    @classmethod
+    def _penalised(
+        cls, vectors: NDArray[np.float32], mean: NDArray[np.float32], products: NDArray[np.float32], shrinkage: float
+    ) -> "DualForm":
         length2 = float(np.trace(products, dtype=np.float64)) / len(products)
         penalty = shrinkage * max(length2, SMALLEST_LENGTH2)
         products.ravel()[:: len(products) + 1] += penalty
         return cls(vectors, mean, penalty, products)
+
+    def of_first(self, count: int, shrinkage: float) -> "DualForm":
+        """Return the form of the first so many vectors, about their own mean: their products need not be multiplied."""
+        vectors, products = self.vectors[:count], self.products[:count, :count].copy()
+        products.ravel()[:: count + 1] -= self.penalty
+        shift = products.mean(axis=1, dtype=np.float64)
+        products -= (shift - shift.mean() / 2).astype(np.float32)
+        products -= (shift - shift.mean() / 2).astype(np.float32)[:, None]
+        mean = vectors.mean(axis=0, dtype=np.float64).astype(np.float32)
+        return self._penalised(vectors, mean, products, shrinkage)
 
     def fitted(self, dual: Array, intercept: Array) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         """Return the axes (inputs, actions) and offsets (actions,) of weights of the vectors (n, actions)."""
@@ -69,26 +96,33 @@ class DualRidge:
     Of the inverse, only its root W is held: Wᵀ W is the inverse, and any block of it the product of columns of W.
     """
 
-    def __init__(self, vectors: NDArray[np.float32], indicators: Array, shrinkage: float) -> None:
-        form = DualForm.of(vectors, shrinkage)
+    def __init__(self, form: DualForm, indicators: Array) -> None:
         self._indicators, self._root = indicators, inverse_root(form.products.astype(np.float64))
         intercept: Array = indicators.mean(axis=0)
         self._dual: Array = self._root.T @ (self._root @ (indicators - intercept))
         self.axes, self.offsets = form.fitted(self._dual, intercept)
         self.scores: Array = indicators - form.penalty * self._dual
 
-    def held_out(self, rows: Indices) -> Array:
-        """Return the scores (rows, actions) by a regression that was fitted to all other rows.
+    def held_out(self, folds: Sequence[Indices]) -> list[Array]:
+        """Return the scores (rows, actions) of each of some folds by a regression that was fitted to all other rows.
 
-        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted. What these
-        rows indicate is left out to the last bit, and not just up to rounding as by one product for all folds.
+        By the inverse B of a block matrix, K_hf (K_ff + penalty)⁻¹ = −B_hh⁻¹ B_hf: nothing need be fitted. What a
+        fold's rows indicate is left out to the last bit: it is 0 in the fold's own columns of the product for all.
         """
-        others = np.ones((len(self._indicators), 1), dtype=bool)
-        others[rows] = False
-        intercept: Array = self._indicators.mean(axis=0, where=others) if others.any() else np.zeros(len(self.offsets))
+        intercepts, targets = [], []
+        for rows in folds:
+            others = np.ones((len(self._indicators), 1), dtype=bool)
+            others[rows] = False
+            mean = self._indicators.mean(axis=0, where=others) if others.any() else np.zeros(len(self.offsets))
+            intercepts.append(mean)
+            targets.append(np.where(others, self._indicators - mean, 0.0))
+        products = np.split(self._root @ np.hstack(targets), len(folds), axis=1)
+        return [self._scores(*each) for each in zip(folds, intercepts, products, strict=True)]
+
+    def _scores(self, rows: Indices, intercept: Array, of_others: Array) -> Array:
         first = rows.min(initial=len(self._root))  # above it, these columns of the root are 0
-        targets, own = np.where(others, self._indicators - intercept, 0.0), self._root[first:, rows]
-        scores: Array = intercept - np.linalg.solve(own.T @ own, own.T @ (self._root[first:] @ targets))
+        own = self._root[first:, rows]
+        scores: Array = intercept - np.linalg.solve(own.T @ own, own.T @ of_others[first:])
         return scores
 
     def each_left_out(self, count: int) -> Array:
@@ -156,8 +190,11 @@ class PrimalRidge:
         scores: Array = (self._centred @ self.axes).astype(np.float64) + self._intercept
         return scores
 
-    def held_out(self, rows: Indices) -> Array:
-        """Return the scores (rows, actions) by a regression that was fitted to all other rows."""
+    def held_out(self, folds: Sequence[Indices]) -> list[Array]:
+        """Return the scores (rows, actions) of each of some folds by a regression that was fitted to all other rows."""
+        return [self._held_out(rows) for rows in folds]
+
+    def _held_out(self, rows: Indices) -> Array:
         centred = self._centred[rows]
         rest = self._moments.without(_Moments.of(centred, self._indicators[rows]))
         axes, intercept = rest.solution(self._penalty)

@@ -8,6 +8,7 @@ Coordinates are those of the joints, and of some joints from others, with their 
 not show how far a hand is from the head.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -90,16 +91,11 @@ class Convolutions:
 
     def responses(self, series: Floats32) -> Floats32:
         """Return each filter's response at each instant of a series (COORDINATES, INSTANTS), (FILTERS, INSTANTS)."""
-        inputs = self._inputs(series).reshape(len(DILATED), len(KERNELS), INSTANTS)
-        padded = np.zeros((*inputs.shape[:2], INSTANTS + 2 * LONGEST_REACH), np.float32)
-        padded[:, :, LONGEST_REACH : LONGEST_REACH + INSTANTS] = inputs
-        windows = sliding_window_view(padded, INSTANTS, axis=2)
-        found = np.empty_like(inputs)
-        for of_dilation, dilation, responses in zip(windows, DILATED.tolist(), found, strict=True):
-            first = LONGEST_REACH - WEIGHTS // 2 * dilation
-            weighed = of_dilation[:, first : first + WEIGHTS * dilation : dilation] * KERNELS[:, :, None]
-            np.add.reduce(weighed, axis=1, out=responses)
-        return found.reshape(FILTERS, INSTANTS)
+        return _responses(self._inputs(series))
+
+    def responses_each(self, series: Sequence[Floats32]) -> Floats32:
+        """Return each filter's response to a series of its own, (FILTERS, INSTANTS)."""
+        return _responses(np.stack([self._inputs(own)[number] for number, own in enumerate(series)]))
 
     def features(self, series: Floats32) -> Floats32:
         """Return the share of the instants at which each response exceeds each of its biases, (FILTERS * biases,)."""
@@ -120,6 +116,20 @@ class Convolutions:
         changing[:, 1:] = np.diff(changing)
         changing[:, 0] = 0.0
         return inputs
+
+
+def _responses(inputs: Floats32) -> Floats32:
+    """Return each filter's response to its input, both (FILTERS, INSTANTS)."""
+    inputs = inputs.reshape(len(DILATED), len(KERNELS), INSTANTS)
+    padded = np.zeros((*inputs.shape[:2], INSTANTS + 2 * LONGEST_REACH), np.float32)
+    padded[:, :, LONGEST_REACH : LONGEST_REACH + INSTANTS] = inputs
+    windows = sliding_window_view(padded, INSTANTS, axis=2)
+    found = np.empty_like(inputs)
+    for of_dilation, dilation, responses in zip(windows, DILATED.tolist(), found, strict=True):
+        first = LONGEST_REACH - WEIGHTS // 2 * dilation
+        weighed = of_dilation[:, first : first + WEIGHTS * dilation : dilation] * KERNELS[:, :, None]
+        np.add.reduce(weighed, axis=1, out=responses)
+    return found.reshape(FILTERS, INSTANTS)
 
 
 def _packed(mask: Mask) -> NDArray[np.uint32]:

@@ -139,7 +139,8 @@ class FirstMaps:
         missing = np.isnan(postures).any() or np.isnan(velocities).any()
         if steps is None or self.postures.dtype != np.float32 or missing:
             return running_sums(self.activities(postures, velocities))
-        sums = np.zeros((len(postures) + 1, self.units), np.uint32)
+        sums = np.empty((len(postures) + 1, self.units), np.uint32)
+        sums[0] = 0
         frames = (np.ascontiguousarray(each, np.float64) for each in (postures, velocities))
         shares = self.shares.tobytes()
         steps.added_frames(*frames, *MIRRORED, *_MAP_INPUTS, *self._compiled, shares, SCALE, sums)
@@ -147,7 +148,9 @@ class FirstMaps:
 
     def winners(self, postures: Floats) -> NDArray[np.intp]:
         """Return the map of postures' winner for each of (n, 15, 3), shape (n,); 0 where all joints are missing."""
-        winners: NDArray[np.intp] = _excess2s(self.postures, postures.reshape(-1, _SIZE)).argmin(axis=1)
+        rows, winners = postures.reshape(-1, _SIZE), np.zeros(len(postures), np.intp)
+        known = ~np.isnan(rows).all(axis=1)
+        winners[known] = self.postures.bmus(rows[known])
         return winners
 
     def log_errors(self, postures: Floats, winners: Sequence[int] | NDArray[np.intp]) -> Floats:

@@ -379,9 +379,14 @@ INLINE void products_of(const float *seen, const float *image, const float *weig
                         float *of_seen, float *of_image, int fused)
 {
     for (Py_ssize_t first = 0; first < units; first += BLOCK) {
-        float sums[SIDES][BLOCK] = {{0}};
+        float sums[SIDES][BLOCK];
         size_t written = (units - first < BLOCK ? units - first : BLOCK) * sizeof(float);
-        for (Py_ssize_t k = 0; k < dim; k++, weights += BLOCK)
+        for (int u = 0; u < BLOCK; u++) { /* the first term is added to 0: to clear the sums before costs a tenth of all */
+            sums[0][u] = 0.0f + seen[0] * weights[u];
+            sums[1][u] = 0.0f + image[0] * weights[u];
+        }
+        weights += BLOCK;
+        for (Py_ssize_t k = 1; k < dim; k++, weights += BLOCK)
             for (int u = 0; u < BLOCK; u++) {
                 sums[0][u] = fused ? fmaf(seen[k], weights[u], sums[0][u]) : sums[0][u] + seen[k] * weights[u];
                 sums[1][u] = fused ? fmaf(image[k], weights[u], sums[1][u]) : sums[1][u] + image[k] * weights[u];
@@ -1354,15 +1359,19 @@ static PyObject *exceeding(PyObject *module, PyObject *args)
     Py_ssize_t filters = b[5].len / (Py_ssize_t)sizeof(float), of_each = b[6].len / (Py_ssize_t)sizeof(float) / filters;
     Py_ssize_t kernel_count = b[1].len / weights;
     int instants = (int)(b[4].len / 4 / filters);
-    if (instants > MOST_INSTANTS)
+    if (instants > MOST_INSTANTS) {
         PyErr_SetString(PyExc_ValueError, "more instants than the compiled step has room for");
-    for (Py_ssize_t f = 0; f < filters && !PyErr_Occurred(); f++) {
+        return released(b, 7);
+    }
+    Py_BEGIN_ALLOW_THREADS
+    for (Py_ssize_t f = 0; f < filters; f++) {
         respond(inputs + f * instants, kernels + f % kernel_count * weights, weights, dilations[f / kernel_count], instants,
                 response);
         for (Py_ssize_t n = 0; n < of_each; n++)
             out[f * of_each + n]
                 = (float)count_above(response, biases[f * of_each + n], counted + f * instants, instants) / counts[f];
     }
+    Py_END_ALLOW_THREADS
     return released(b, 7);
 }
 

@@ -12,6 +12,7 @@ from actum_model_trainer.discriminants import (
     MAX_PERSON_FOLDS,
     Discriminants,
     fit_discriminants,
+    fit_without_and_with,
     folds_of,
 )
 
@@ -120,7 +121,18 @@ def with_background() -> tuple[np.ndarray, np.ndarray, float, Discriminants]:
     centred = every.astype(np.float64) - every.mean(axis=0, dtype=np.float64)
     penalty = SHRINKAGE * np.square(centred).sum(axis=1).mean()
     padded = np.concatenate([indicators, np.zeros((7, ACTIONS))])
-    return centred, padded, penalty, fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE, background)
+    _, found = fit_without_and_with(vectors, indicators, FOLDS, SHRINKAGE, background)
+    return centred, padded, penalty, found
+
+
+@pytest.mark.parametrize("inputs", [5, 40])
+def test_background_changes_nothing_of_the_discriminants_without_it(inputs: int) -> None:
+    vectors, indicators = training(inputs)
+    background = np.random.default_rng(3).normal(size=(7, inputs)).astype(np.float32)
+    without, _ = fit_without_and_with(vectors, indicators, FOLDS, SHRINKAGE, background)
+    alone = fit_discriminants(vectors, indicators, FOLDS, SHRINKAGE)
+    for name, expected in vars(alone).items():
+        np.testing.assert_allclose(getattr(without, name), expected, atol=1e-5, err_msg=name)
 
 
 def test_untaught_scores_are_those_of_axes_fitted_without_the_action() -> None:

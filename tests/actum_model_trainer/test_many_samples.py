@@ -64,7 +64,7 @@ def test_maps_are_trained_on_every_action_although_only_each_third_sample_fits(m
     monkeypatch.setattr(pyramid_training, "MOST_FRAMES", frames // 3 + 1)
     first = {id(each[0]): sample.label for each, sample in zip(of_all.augmented, of_all.samples, strict=True)}
     some = pyramid_training._some(of_all)
-    assert Counter(first[id(each)] for each in some if id(each) in first) == dict.fromkeys(TAUGHT, 4)
+    assert Counter(first[id(of_sample[0])] for of_sample in some) == dict.fromkeys(TAUGHT, 4)
 
 
 def test_examples_can_be_added_to_a_model_of_many_samples(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from actum_model_trainer.basis import Basis
 from actum_model_trainer.products import inner_products, inverse_root, solution
-from actum_model_trainer.ridge import DualRidge, PrimalRidge, ridge
+from actum_model_trainer.ridge import DualForm, DualRidge, PrimalRidge, ridge
 
 SHRINKAGE = 0.2
 COUNT = 20
@@ -21,15 +21,16 @@ def rows(inputs: int = 12) -> tuple[np.ndarray, np.ndarray]:
 
 
 def answers(fitted: DualRidge | PrimalRidge) -> list[np.ndarray]:
-    held_out = np.array([1, 4, 5])
-    left_out = [fitted.held_out(held_out), fitted.each_left_out(COUNT)]
+    folds = [np.array([1, 4, 5]), np.array([0, 2])]
+    left_out = [*fitted.held_out(folds), fitted.each_left_out(COUNT)]
     return [fitted.axes, fitted.offsets, fitted.scores, *left_out]
 
 
 @pytest.mark.parametrize("inputs", [5, 12, 40])
 def test_the_dual_and_the_primal_form_give_the_same(inputs: int) -> None:
-    dual, primal = (answers(form(*rows(inputs), SHRINKAGE)) for form in (DualRidge, PrimalRidge))
-    for one, other in zip(dual, primal, strict=True):
+    vectors, indicators = rows(inputs)
+    dual = DualRidge(DualForm.of(vectors, SHRINKAGE), indicators)
+    for one, other in zip(answers(dual), answers(PrimalRidge(vectors, indicators, SHRINKAGE)), strict=True):
         np.testing.assert_allclose(one, other, atol=2e-5)
 
 

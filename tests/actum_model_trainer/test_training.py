@@ -88,7 +88,7 @@ STAGES_OF_TRAINING = [
         [
             ("maps of the first layer", len(MAP_INPUTS)),
             ("pooling of examples", 1),
-            ("discriminant axes", len(TINY.stages) + 3),
+            ("discriminant axes", len(TINY.stages) + 1),
             ("map of actions", TINY.concept_epochs),
             ("neurons", TINY.epochs),
         ],

@@ -20,6 +20,9 @@ from som_classifier.spotting.spotting_model import CompletenessHeads, PyramidSpo
 CHUNK = 64
 """Windows whose vectors are held at once: they stay in the processor's cache until they are multiplied."""
 
+LANES = 4
+"""Heads are padded to multiples of this many: BLAS multiplies 13 of them in a quarter more time than 16."""
+
 
 @dataclass(frozen=True, eq=False)
 class ScannedStream:
@@ -59,16 +62,17 @@ def _answers(
 ) -> NDArray[np.float32]:
     """Return the answers (n, actions) to windows (n, 2) of a stream."""
     encoded, of_fold = EncodedStream(model, stream, windows), folds.of(stream, windows)
-    answers = np.zeros((len(windows), len(heads[0].offsets)), np.float32)
+    actions = len(heads[0].offsets)
+    answers = np.zeros((len(windows), actions), np.float32)
     room = np.empty((CHUNK, len(heads[0].axes)), np.float32)
     for fold in np.unique(of_fold).tolist():
-        axes, offsets, in_fold = heads[fold].axes, heads[fold].offsets, np.flatnonzero(of_fold == fold)
-        for first, after in runs_of(in_fold):
+        axes, offsets = np.pad(heads[fold].axes, ((0, 0), (0, -actions % LANES))), heads[fold].offsets
+        for first, after in runs_of(np.flatnonzero(of_fold == fold)):
             for start in range(first, after, CHUNK):
                 chunk = slice(start, min(start + CHUNK, after))
                 vectors = room[: chunk.stop - start]
                 encoded.pool(chunk.start, chunk.stop, vectors)
-                answers[chunk] = vectors @ axes + offsets
+                answers[chunk] = (vectors @ axes)[:, :actions] + offsets
     return answers
 
 
