@@ -166,8 +166,7 @@ def _expect_whole(data: TrainingData, pooled: Basis, features: Basis) -> None:
         if np.setdiff1d(samples, np.arange(count)).size:
             raise KeptError(
                 f"the model file is damaged (its array stage_{number}_samples refers to more samples than the {count} "
-                "in "
-                f"the file): {TRAIN_AGAIN}"
+                f"in the file): {TRAIN_AGAIN}"
             )
     _expect("background", data.background, (len(data.background), pooled.rank))
     _expect("convolved_spread", data.convolved.spread, (len(features.directions),))
