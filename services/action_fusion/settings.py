@@ -92,8 +92,9 @@ class Settings(RememberingSettings):
         0.25,
         gt=0,
         description=(
-            "maximum distance (m) between a hand and the object of an action other than pointing. --grasp-m is added "
-            "for an object that moves during the action, because the person can move the object with a tool"
+            "maximum distance (m) between a hand and the object of an action; pointing has no such maximum. For an "
+            "object that moves during the action, the maximum is larger by the value of --grasp-m, because the person "
+            "can move the object with a tool"
         ),
     )
     grasp_m: float = Field(
@@ -140,9 +141,9 @@ class Settings(RememberingSettings):
     expected_outcomes: dict[str, str] = Field(
         {"lift": "lifted", "put": "put down", "place": "put down", "push": "pushed", "pull": "pulled"},
         description=(
-            "the result that is expected of each action for its object, such as lift=lifted,push=pushed. Events say "
-            "whether the expected result occurred. Only in actions without an expected result can an object in the "
-            "hand count as a tool; events then name the object on which the person uses the tool"
+            "for each action, what is expected to happen to its object, such as lift=lifted,push=pushed. Events say "
+            "whether this happened. In an action that is listed here, an object in the hand never counts as a tool. In "
+            "any other action, it can; the event then names the object on which the person uses the tool"
         ),
     )
     world_from_camera: Annotated[str | None, BeforeValidator(_transform_as_text)] = Field(

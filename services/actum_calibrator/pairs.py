@@ -63,8 +63,8 @@ def _by_name(files: Sequence[Path], name_of: Callable[[Path], str]) -> dict[str,
     for file in files:
         if name_of(file) in named:
             raise PairingError(
-                f"{named[name_of(file)]} and {file} differ only in folder or file type, so it is not clear which of "
-                "them belongs to the other camera's picture: delete or rename one of the two files"
+                f"{named[name_of(file)]} and {file} have the same name but for folder and file type. Pictures of two "
+                "cameras are paired by their names, so these two could not be told apart: delete or rename one of them"
             )
         named[name_of(file)] = file
     return named

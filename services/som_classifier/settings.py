@@ -90,15 +90,15 @@ class Settings(RememberingSettings):
     enabled_actions: Names = Field(
         frozenset(),
         description=(
-            "the only actions, such as wave,clap, to publish among those that the classifier finds by itself. Actions "
-            "whose start and end another program marks are always published. Default: all actions of the model"
+            "the only actions, such as wave,clap, to publish among those that the classifier finds by itself. If "
+            "another program marks an action's start and end, the action is always published. Default: all actions"
         ),
     )
     disabled_actions: Names = Field(
         frozenset(),
         description=(
-            "do not publish these actions, such as wave,clap, when the classifier finds them by itself. Actions whose "
-            "start and end another program marks are always published. Default: none"
+            "do not publish these actions, such as wave,clap, when the classifier finds them by itself. If another "
+            "program marks an action's start and end, the action is always published. Default: none"
         ),
     )
 

@@ -222,8 +222,8 @@ class RememberingSettings(SharedSettings):
     state: Path | None = Field(
         None,
         description=(
-            "a folder in which the classifier stores its latest actions, and the action fusion its latest events. "
-            "Therefore, after a restart, neither service publishes another result for the same segment. Not used with "
-            "--share: the processes then know each other's results. Default: nothing is stored"
+            "a folder in which the service stores the results that it has published. After a restart, the service "
+            "publishes no second, different result for the same segment. Ignored with --share, because processes that "
+            "share sensors receive each other's results. Default: nothing is stored; 'actum up' uses a temporary folder"
         ),
     )

@@ -184,9 +184,9 @@ def rotate(
     """Renew all certificates and keys, before they expire or after some were lost or stolen.
 
     If credentials were lost or stolen, name their folder with --revoke, so that the routers refuse the old certificate.
-    Afterwards, copy the new files: the folder credentials/ of each host to that host, and the folders in people/ to the
-    users' machines. Services read the new certificates without a restart. Only if you used --revoke, also copy
-    router.json5 to each host, and restart the routers that run in containers.
+    Afterwards, copy the new files: to each host, the folder credentials/ that was written for this host; to each user's
+    machine, the user's folder from people/. Services read the new certificates without a restart. Only if you used
+    --revoke, also copy router.json5 to each host. Then restart each router that runs in a container or is 'zenohd'.
     """
     with failing_on(SettingsError, OSError), needs_extra("deploy"):
         from actum_deployer.writing import alone, write_deployment

@@ -38,8 +38,8 @@ def tune(
         typer.Argument(
             metavar="REC...",
             help=(
-                "recordings, or folders of recordings. All actions in the recordings must be labelled, and between the "
-                "actions people must also do other things"
+                "recordings, or folders of recordings. All actions in the recordings must be labelled. Between the "
+                "actions, the recordings must also show other movement"
             ),
         ),
     ],
