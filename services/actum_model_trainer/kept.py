@@ -25,7 +25,7 @@ RANK = 256
 """Directions that are kept: 94 to 98 % of the variance of pooled vectors lies in them."""
 MOST_RANK = 2 * RANK
 """Most directions that are kept after additions, each of which appends some, or of a training on many samples."""
-TRAIN_AGAIN = "with this version of actum, train a model again from recordings of all actions"
+TRAIN_AGAIN = "train the model again with this version of actum, from recordings of all actions"
 COARSE = np.float16
 """The precision of what is kept: its rounding is small beside the noise of a sensor."""
 
