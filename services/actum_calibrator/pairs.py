@@ -40,9 +40,8 @@ def pair_files(paths: Sequence[Path]) -> list[tuple[str, Path, Path]]:
         files = [file for path in paths for file in (pictures_in(path) if path.is_dir() else [path])]
         if stray := next((file.name for file in files if not file.stem.endswith(SUFFIXES)), None):
             raise PairingError(
-                f"the name of the picture {stray} ends neither in _a nor in _b: let _a end the names of the pictures "
-                "from the camera that sees the markers, and _b those from the camera that sees the people. Or give one "
-                "folder per camera"
+                f"the name of the picture {stray} ends neither in _a nor in _b: let the names of pictures from the "
+                "camera that sees the markers end in _a, and the others in _b. Or give one folder per camera"
             )
         sides = [_by_name([f for f in files if f.stem.endswith(end)], lambda f: f.stem[:-2]) for end in SUFFIXES]
     if alone := sorted(set(sides[0]) ^ set(sides[1])):

@@ -101,7 +101,7 @@ def fit_without_and_with(
     shrinkage: float,
     background: NDArray[np.float32],
 ) -> list[Discriminants]:
-    """Fit the same, and discriminants that hold the vectors against background, too.
+    """Fit discriminants to the vectors alone, as `fit_discriminants` does, and others to vectors and background.
 
     Args:
         vectors: (n, inputs).

@@ -48,7 +48,7 @@ class Settings(SharedSettings):
         1.0,
         gt=0,
         le=60,
-        description=("time for which an object is still published after its marker was last seen (s)"),
+        description="time for which an object is still published after its marker was last seen (s)",
     )
     calibrated_size_px: tuple[Pixels, Pixels] | None = Field(
         None,

@@ -185,6 +185,19 @@ def with_different_names(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
     return made
 
 
+def check_count(values: int) -> None:
+    """Check that a message has no more than `MOST_VALUES` values.
+
+    Raises:
+        ValueError: it has more.
+    """
+    if values > MOST_VALUES:
+        raise ValueError(
+            f"a message contains more than {MOST_VALUES} values (the values in lists and maps count, too); send fewer "
+            "values"
+        )
+
+
 def unpack(payload: bytes) -> Any:
     """Unpack msgpack, and refuse a payload that has too many values, or a name twice.
 
@@ -193,16 +206,12 @@ def unpack(payload: bytes) -> Any:
     Raises:
         UNPACK_ERRORS: it is no msgpack, is nested too deeply, has too many values, or a name twice.
     """
-    left = MOST_VALUES
+    values = 0
 
     def counted(container: list[Any]) -> list[Any]:
-        nonlocal left
-        left -= 1 + len(container)
-        if left < 0:
-            raise ValueError(
-                f"a message contains more than {MOST_VALUES} values (the values in lists and maps count, too); send "
-                "fewer values"
-            )
+        nonlocal values
+        values += 1 + len(container)
+        check_count(values)
         return container
 
     return msgpack.unpackb(

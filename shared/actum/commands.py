@@ -10,7 +10,7 @@ import msgpack
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic_core import ErrorDetails
 
-from actum.codec import MOST_VALUES, UNPACK_ERRORS, encodable, unpack, with_different_names
+from actum.codec import MOST_VALUES, UNPACK_ERRORS, check_count, encodable, unpack, with_different_names
 
 Q = TypeVar("Q", bound="Request")
 A = TypeVar("A", bound=BaseModel)
@@ -158,11 +158,7 @@ def unpacked(payload: bytes, encoding: str) -> dict[str, Any]:
 
 def _from_json(payload: bytes) -> Any:
     """Parse JSON; one of many values is refused, for each takes many times its bytes once parsed."""
-    if sum(map(payload.count, BEFORE_VALUES)) > MOST_VALUES:
-        raise ValueError(
-            f"a message contains more than {MOST_VALUES} values (the values in lists and maps count, too); send fewer "
-            "values"
-        )
+    check_count(sum(map(payload.count, BEFORE_VALUES)))
     return json.loads(payload, object_pairs_hook=with_different_names)
 
 

@@ -158,7 +158,7 @@ def preset_named(name: str, settings: Sequence[str]) -> Preset:
     changes = dict(setting.partition("=")[::2] for setting in settings)
     if changes and not preset.choices:
         fail(
-            f"preset {name} has no settings: leave out --set, or use --preset paper, which has the settings "
+            f"preset {name} has no settings: leave out --set, or use --preset {PAPER.name}, which has the settings "
             f"{', '.join(PAPER.choices)}"
         )
     for setting, value in changes.items():

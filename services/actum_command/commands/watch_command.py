@@ -59,8 +59,8 @@ def watch(
     command prints the messages of recordings instead, even of a file that 'actum record --events' is still writing.
 
     A message on the topic 'intent' (the objects that a hand reaches for) is printed only if the likeliest object
-    changes, if the probability of this object rises above 0.5 or 0.9 for the first time, or if the hand's movement
-    ends. With --json, all these messages are printed.
+    changes, if the probability of this object reaches 0.5 or 0.9 for the first time, or if the hand's movement ends.
+    With --json, all these messages are printed.
     """
     named = {name: WATCHABLE.get(name) or WATCHABLE.get(name.removesuffix("s")) for name in topics or []}
     for name in (name for name, topic in named.items() if topic is None):

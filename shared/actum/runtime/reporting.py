@@ -32,8 +32,8 @@ MOST_KEYS = 256
 MOST_ORIGINS = 16
 """Most publishers on a key whose numbers are followed: each mark may come from a process of its own."""
 HISTORY_NS = 3_000_000_000
-"""How long after their request earlier actions may come (ns), in whose numbers there are gaps: they come at once, but
-twice a second later where a publisher does not answer."""
+"""How long after their request earlier actions can come (ns), in whose numbers there are gaps: they come at once, but
+twice `subscribing.ANSWER_S` later if a publisher does not answer."""
 REPORT_S = 1.0
 """Interval between two reports (s)."""
 
