@@ -79,10 +79,10 @@ class JobCommands:
             message=job.message[:LONGEST_TEXT],
         )
 
-    def importing_to(self, name: str) -> bool:
-        """Return whether a running job is to add a take to that set."""
+    def working_on(self, name: str) -> str | None:
+        """Say which running job reads that set, is to add a take to it or to name it; None where none does."""
         job = self._job
-        return job is not None and job.state == "running" and job.kind == "import" and job.set == name
+        return KINDS[job.kind] if job is not None and (job.state, job.set) == ("running", name) else None
 
     def look(self) -> None:
         """Look how far the running job is, and keep what it made once it has ended."""

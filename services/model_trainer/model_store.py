@@ -139,6 +139,19 @@ class ModelStore:
         path.unlink()
         path.with_suffix(".json").unlink(missing_ok=True)
 
+    def rename_set(self, name: str, new_name: str) -> None:
+        """Note of each model that was trained on a set that the set has another name now.
+
+        Raises:
+            OSError: it cannot be noted.
+        """
+        for each in self.listed()[0]:
+            if each.set == name:
+                renamed = each.model_copy(update={"set": new_name})
+                write_whole(each.path.with_suffix(".json"), renamed.model_dump_json().encode())
+        if self.set == name:
+            self.set = new_name
+
     def look(self) -> bool:
         """Look whether the watched file has changed, and return that.
 

@@ -76,7 +76,12 @@ class SetCommands:
     def _rename(self, request: RenameSet) -> Done:
         """Give a set another name."""
         self._refuse_busy(request.set)
-        return self._changes.made(self._sets.rename, request.set, request.name)
+
+        def rename() -> None:
+            self._sets.rename(request.set, request.name)
+            self._models.rename_set(request.set, request.name)
+
+        return self._changes.made(rename)
 
     def _delete(self, request: OfSet) -> Done:
         """Delete a set with all its examples; models that were trained on it stay."""
@@ -84,13 +89,11 @@ class SetCommands:
         return self._changes.made(self._sets.delete, request.set)
 
     def _refuse_busy(self, name: str) -> None:
-        """Refuse what would take a set away from what writes to it."""
+        """Refuse what would take a set away from what works on it."""
         if self._takes.recording_to(name):
             raise Refusal(f"a recording into the set {name} is running: stop or discard this recording first")
-        if self._jobs.importing_to(name):
-            raise Refusal(
-                f"a video is being imported into the set {name}: wait until the import ends, or cancel the import"
-            )
+        if job := self._jobs.working_on(name):
+            raise Refusal(f"the set {name} is in use by {job}: wait until it ends, or cancel it")
 
 
 def _listed(stored: StoredSet) -> SetListed:

@@ -87,6 +87,22 @@ def test_a_set_is_trained_put_into_use_and_undone(teacher: Teacher, finish: Fini
         teacher.ask("undo")
 
 
+def test_a_set_that_is_renamed_is_still_the_one_that_its_models_were_trained_on(teacher: Teacher) -> None:
+    begun = teacher.ask("train", set="kitchen")
+    with pytest.raises(Refusal, match="the set kitchen is in use by a training: wait until it ends, or cancel it"):
+        teacher.ask("rename_set", set="kitchen", name="Küche")
+    tiny_model().save(teacher.jobs[-1].arguments.folder / job.MODEL)
+    teacher.jobs[-1].news = Ended({"model": tiny_model().id, "scores": {}})
+    teacher.tick()
+    assert teacher.ask("job", job=begun["id"])["state"] == "done"
+    teacher.ask("activate", model=tiny_model().id)
+    teacher.ask("rename_set", set="kitchen", name="Küche")
+    assert teacher.tick(20).model_set == "Küche", "where the page keeps corrections"
+    teacher.begin()
+    assert teacher.tick().model_set == "Küche"
+    assert [each["set"] for each in teacher.ask("list")["models"]] == ["Küche"]
+
+
 def test_how_postures_go_on_is_learnt_on_request(teacher: Teacher, finish: Finish) -> None:
     for continued in (False, True):
         teacher.ask("train", set="kitchen", continued=continued)
