@@ -13,6 +13,7 @@ from actum_examples.take import Take
 from model_trainer.changes import Changes, on_disk
 from model_trainer.film import Film, films_of
 from model_trainer.model_store import ModelStore
+from model_trainer.recent_frames import SLACK_NS
 from model_trainer.replies import Done, ExampleListed, Examples, FilmReply
 from model_trainer.requests import DeleteAction, OfExample, OfSet, Relabel, Trim
 from model_trainer.set_store import SetStore
@@ -79,8 +80,11 @@ class ExampleCommands:
     def _trim(self, request: Trim) -> Done:
         """Give an example another start and end."""
         take, example = self._found(request)
+        assert example.bounds_ns is not None
+        bounds = zip(example.bounds_ns, (request.start_ns, request.end_ns), strict=True)
+        start_ns, end_ns = (old if abs(new - old) <= SLACK_NS else new for old, new in bounds)
         try:
-            return self._changes.made(edits.move, take, example, request.start_ns, request.end_ns)
+            return self._changes.made(edits.move, take, example, start_ns, end_ns)
         except edits.EditError as error:
             raise Refusal(str(error)) from None
 

@@ -93,6 +93,15 @@ def test_the_last_take_is_redone_though_events_were_corrected_after_it(teacher: 
     teacher.ask("discard")
 
 
+def test_one_end_of_a_correction_is_trimmed_though_a_browsers_numbers_round_the_other(teacher: Teacher) -> None:
+    teacher.ask("correct", **event(label="wave"))
+    [example] = teacher.examples()
+    rounded_ns, end_ns = example["start_ns"] - 256, example["end_ns"] - SECOND_NS // 2
+    teacher.ask("trim", set="kitchen", example=example["id"], start_ns=rounded_ns, end_ns=end_ns)
+    [trimmed] = teacher.examples()
+    assert (trimmed["start_ns"], trimmed["end_ns"]) == (example["start_ns"], end_ns)
+
+
 def test_an_event_is_corrected_once(teacher: Teacher) -> None:
     teacher.ask("correct", **event(label="wave"))
     for label in ("wave", ""):
