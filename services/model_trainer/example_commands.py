@@ -6,11 +6,11 @@ import numpy as np
 
 from actum.arrays import Array
 from actum.commands import Command, Refusal
-from actum.recording import Recording
+from actum.recording import Recording, RecordingError
 from actum_examples import edits
 from actum_examples.marked_segment import MarkedSegment
 from actum_examples.take import Take
-from model_trainer.changes import Changes, on_disk
+from model_trainer.changes import Changes, file_problem, on_disk
 from model_trainer.film import Film, films_of
 from model_trainer.model_store import ModelStore
 from model_trainer.recent_frames import SLACK_NS
@@ -103,12 +103,14 @@ class ExampleCommands:
         takes = [take for take in self._sets.get(request.set).takes if request.label in take.labels]
         if not takes:
             raise Refusal(f"the set {request.set} has no example of {request.label!r}: choose another action")
-
-        def remove_all() -> None:
-            for take in takes:
+        for done, take in enumerate(takes):
+            try:
                 self.remove(take, [each for each in take.examples if each.label == request.label])
-
-        return self._changes.made(remove_all)
+            except (OSError, RecordingError) as error:
+                left = f"the examples in {len(takes) - done} of {len(takes)} recordings were not deleted"
+                raise Refusal(f"{file_problem(error)}; {left}: solve this problem, then try again") from None
+            self._changes.revision += 1
+        return Done(revision=self._changes.revision)
 
     def _found(self, request: OfExample) -> tuple[Take, MarkedSegment]:
         for take in self._sets.get(request.set).takes:

@@ -235,6 +235,23 @@ def test_an_action_is_deleted_with_the_takes_that_hold_nothing_else(teacher: Tea
         teacher.ask("delete_action", set="kitchen", label="wave")
 
 
+def test_of_an_action_that_cannot_be_deleted_whole_it_is_told_how_much_is_left(
+    teacher: Teacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    last = teacher.examples()[-1]
+    teacher.ask("relabel", set="kitchen", example=last["id"], label="wave")
+    before = teacher.tick(20).revision
+
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("os.fsync", full)
+    with pytest.raises(Refusal, match="No space left on device; the examples in 1 of 2 recordings were not deleted"):
+        teacher.ask("delete_action", set="kitchen", label="wave")
+    assert [each["id"] for each in teacher.examples() if each["label"] == "wave"] == [last["id"]]
+    assert teacher.tick(20).revision > before, "or pages go on showing what is deleted"
+
+
 @pytest.mark.parametrize("example", ["take-0001/none", "nothing", "../take-0001/cut-1", "x" * 401])
 def test_examples_that_are_not_there_are_refused(teacher: Teacher, example: str) -> None:
     for command in ("film", "delete", "mirror"):
