@@ -1,8 +1,8 @@
 """Names that people give to sets, actions, people and files: some become file names, so that little is allowed."""
 
 import re
-import unicodedata
 from typing import Annotated
+from unicodedata import normalize
 
 from pydantic import AfterValidator, Field
 
@@ -26,7 +26,7 @@ def checked_name(name: str) -> str:
     Raises:
         ValueError: it holds another character than letters, digits, space, `_`, `-` and `.`, or is too long.
     """
-    composed = unicodedata.normalize("NFC", name)
+    composed = normalize("NFC", name)
     size = len(composed.encode(errors="replace"))
     if len(composed) > LONGEST or size > LONGEST_BYTES:
         raise ValueError(
@@ -66,5 +66,7 @@ LabelOrNone = Annotated[str, Field(max_length=4 * LONGEST), AfterValidator(lambd
 """The name of an action, or an empty text for background."""
 NameOrNone = Annotated[str, Field(max_length=4 * LONGEST), AfterValidator(lambda text: text and checked_name(text))]
 """A name, or an empty text where nobody gave one."""
+SetName = Annotated[str, Field(max_length=200), AfterValidator(lambda text: normalize("NFC", text))]
+"""The name of a set that is there, whatever somebody has called its folder; it is looked up, never made into a path."""
 Id = Annotated[str, Field(min_length=1, max_length=400)]
 """What a reply has called something by; it is looked up, never made into a path."""

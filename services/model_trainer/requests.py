@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, ConfigDict, Field
 
 from actum import commands
 from actum_examples.cutting.choice import MOST_REPETITIONS
-from model_trainer.names import Id, Label, LabelOrNone, Name, NameOrNone
+from model_trainer.names import Id, Label, LabelOrNone, Name, NameOrNone, SetName
 from som_classifier.presets import DEFAULT
 
 USUAL_COUNT = 5
@@ -38,6 +38,13 @@ class Request(commands.Request):
 
 class OfSet(Request):
     """Which set is meant."""
+
+    set: SetName
+    """The set's name, as `list` gives it."""
+
+
+class CreateSet(Request):
+    """A set to be made."""
 
     set: Name
     """The set's name: letters, digits, spaces, `_`, `-`, `.`; 64 characters at the most."""
@@ -106,7 +113,7 @@ class Trim(OfExample):
 class DeleteAction(OfSet):
     """Which action is meant."""
 
-    label: Name
+    label: Id
     """The action of which all examples are deleted."""
 
 

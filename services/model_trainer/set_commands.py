@@ -10,7 +10,7 @@ from model_trainer.changes import Changes
 from model_trainer.job_commands import JobCommands
 from model_trainer.model_store import ModelStore
 from model_trainer.replies import Done, Everything, ModelListed, SetListed, TakeListed
-from model_trainer.requests import OfSet, RenameSet
+from model_trainer.requests import CreateSet, OfSet, RenameSet
 from model_trainer.set_store import SetStore, StoredSet
 from model_trainer.take_commands import TakeCommands
 from som_classifier.presets import DEFAULT, PRESETS
@@ -41,7 +41,7 @@ class SetCommands:
         """What can be asked."""
         return (
             Command("list", NoFields, Everything, self._list),
-            Command("create_set", OfSet, Done, self._create),
+            Command("create_set", CreateSet, Done, self._create),
             Command("rename_set", RenameSet, Done, self._rename),
             Command("delete_set", OfSet, Done, self._delete),
         )
@@ -69,7 +69,7 @@ class SetCommands:
             unreadable=unreadable,
         )
 
-    def _create(self, request: OfSet) -> Done:
+    def _create(self, request: CreateSet) -> Done:
         """Make an empty set of examples."""
         return self._changes.made(self._sets.create, request.set)
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import count
 from pathlib import Path
+from unicodedata import normalize
 
 from pydantic import BaseModel
 
@@ -84,8 +85,12 @@ class SetStore:
         Raises:
             OSError: the folder cannot be read.
         """
+        return sorted(self._folders())
+
+    def _folders(self) -> dict[str, Path]:
+        """Return the sets' folders by their names in composed Unicode (NFC): some systems write ü as two characters."""
         folders = (path for path in self._folder.iterdir() if not path.name.startswith("."))
-        return sorted(path.name for path in folders if os.path.lexists(path / DESCRIPTION))
+        return {normalize("NFC", path.name): path for path in folders if os.path.lexists(path / DESCRIPTION)}
 
     def get(self, name: str) -> StoredSet:
         """Read a set.
@@ -121,10 +126,11 @@ class SetStore:
         Raises:
             Refusal: there is none of that name.
         """
-        if name not in self.names():
-            existing = ", ".join(self.names()) or "none yet"
+        folders = self._folders()
+        if name not in folders:
+            existing = ", ".join(sorted(folders)) or "none yet"
             raise Refusal(f"there is no set {name!r}: use an existing set ({existing}), or create this set")
-        return self._folder / name
+        return folders[name]
 
     def create(self, name: str) -> None:
         """Make an empty set.

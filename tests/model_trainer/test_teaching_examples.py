@@ -14,6 +14,8 @@ from actum.commands import Refusal
 from actum.messages import Skeleton
 from actum.recording import Recording
 from actum.skeletons import INDEX
+from actum_examples import edits
+from actum_examples.take import read_take
 from actum_model_trainer.sample_reading import samples_from, select
 from model_trainer.names import checked_name
 from teaching import GOGGLINGS, WAVES, Teacher
@@ -155,6 +157,27 @@ def test_a_set_is_a_folder_that_can_be_copied_renamed_and_deleted(teacher: Teach
     teacher.ask("rename_set", set="Kitchen", name="Küche")
     assert [each["name"] for each in teacher.ask("list")["sets"]] == ["Küche"]
     assert len(teacher.examples("Küche")) == 10
+
+
+@pytest.mark.parametrize("name", ["kitchen (copy)", "Ku\u0308che", "my sets' best!"])
+def test_a_copied_set_can_be_used_and_renamed_whatever_its_folder_is_called(teacher: Teacher, name: str) -> None:
+    shutil.copytree(teacher.folder / "sets" / "kitchen", teacher.folder / "sets" / name)
+    (listed,) = [each["name"] for each in teacher.ask("list")["sets"] if each["name"] != "kitchen"]
+    assert len(teacher.examples(listed)) == 10
+    teacher.teach("nod", WAVES[:2], name=listed)
+    assert teacher.ask("train", set=listed)["set"] == listed
+    teacher.ask("cancel", job="job-1")
+    teacher.ask("rename_set", set=listed, name="garden")
+    assert len(teacher.examples("garden")) == 12
+    teacher.ask("delete_set", set="garden")
+    assert [each["name"] for each in teacher.ask("list")["sets"]] == ["kitchen"]
+
+
+def test_an_action_that_another_program_named_is_deleted_whatever_it_is_called(teacher: Teacher) -> None:
+    take = teacher.folder / "sets/kitchen/take-0001.mcap"
+    edits.relabel(taken := read_take(Recording(take)), taken.examples[0], "pick & place/left")
+    teacher.ask("delete_action", set="kitchen", label="pick & place/left")
+    assert len(teacher.examples()) == 9
 
 
 def test_a_damaged_file_in_a_set_is_named_and_the_others_are_there(teacher: Teacher) -> None:
