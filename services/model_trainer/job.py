@@ -41,6 +41,10 @@ MODEL, TAKE = "model.npz", "take.mcap"
 """What a job leaves in its folder."""
 
 
+SNAPSHOT = "takes"
+"""The folder, in the job's, with the set as it was when the job began; errors name the set's own files."""
+
+
 class Arguments(BaseModel):
     """The arguments of a job: what to do, where to write, and the fields that each kind of job needs."""
 
@@ -99,7 +103,7 @@ def train(arguments: Arguments, progress: Progress) -> dict[str, Any]:
         "model": model.id,
         "labels": model.labels,
         "examples": len(samples.usable),
-        "left_out": [f"{each.segment_id}: {each.reason}" for each in samples.unusable],
+        "left_out": [f"{Path(each.file).stem}/{each.segment_id}: {each.reason}" for each in samples.unusable],
         "scores": {"accuracy_held_out": right / len(answers)} if answers else {},
         "advice": [*filter(None, [sampling.remark]), *advice(_contents(arguments, model), answers)],
     }
@@ -143,14 +147,14 @@ def main() -> None:
     try:
         print_line(result=jobs[arguments.kind](arguments, ProgressLines()))
     except (Refusal, TrainingError, RecordingError, NoSpotterError, ModelError, OSError) as error:
-        print_line(error=str(error))
+        print_line(error=str(error).replace(str(arguments.folder / SNAPSHOT), str(arguments.takes)))
     except ModuleNotFoundError as error:
         print_line(error=f"{error.name} is not installed: run {install_command('camera')}")
 
 
 def _snapshot(arguments: Arguments) -> Path:
     """Return a folder with the set as it is now, whatever is mended while the job runs: files are replaced whole."""
-    snapshot = arguments.folder / "takes"
+    snapshot = arguments.folder / SNAPSHOT
     snapshot.mkdir()
     for take in sorted(arguments.takes.glob("*.mcap")):
         try:
@@ -162,7 +166,7 @@ def _snapshot(arguments: Arguments) -> Path:
 
 def _contents(arguments: Arguments, model: Model | None) -> Contents:
     """Return what the set holds, as it was when the job began."""
-    takes = [read_take(Recording(path)) for path in sorted((arguments.folder / "takes").glob("*.mcap"))]
+    takes = [read_take(Recording(path)) for path in sorted((arguments.folder / SNAPSHOT).glob("*.mcap"))]
     background_s = sum(take.background_s for take in takes)
     return Contents(
         dict(sorted(Counter(label for take in takes for label in take.labels).items())),

@@ -15,6 +15,7 @@ import pytest
 from actum.commands import Refusal
 from actum.node import SECOND_NS, Counters
 from actum.recorder import is_being_written
+from actum.rewriting import rewrite
 from actum_model_trainer import sampling
 from live import wait_until
 from model_trainer import job
@@ -174,6 +175,22 @@ def test_what_cannot_be_trained_fails_with_the_reason(teacher: Teacher, finish: 
         assert ended["message"] == ONE_ACTION
     with pytest.raises(Refusal, match="no preset 'none': use one of"):
         teacher.ask("train", set="kitchen", preset="none")
+
+
+def test_a_damaged_take_is_named_where_it_lies(teacher: Teacher, finish: Finish) -> None:
+    damaged = teacher.folder / "sets/kitchen/take-0001.mcap"
+    damaged.write_bytes(b"no recording")
+    teacher.ask("train", set="kitchen")
+    assert finish()["message"].startswith(f"{damaged}: the file is not an MCAP file")
+
+
+def test_an_example_that_cannot_be_used_is_named_with_its_take(teacher: Teacher, finish: Finish) -> None:
+    example = teacher.examples()[-1]
+    path = teacher.folder / f"sets/kitchen/{example['take']}.mcap"
+    rewrite(path, lambda stored: None if example["start_ns"] < stored.publish_ns < example["end_ns"] else stored)
+    teacher.ask("train", set="kitchen")
+    (left_out,) = finish()["result"]["left_out"]
+    assert left_out.startswith(f"{example['id']}: ")
 
 
 def test_an_update_changes_what_the_model_says_of_the_segments_that_it_finds_as_before(
