@@ -11,8 +11,9 @@ from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 from actum_model_trainer.continuous.watching import found_by
 from actum_model_trainer.evaluation import Evaluation, Prediction, prediction
 from actum_model_trainer.progress import Progress, prefixed, silent
-from actum_model_trainer.provenance import actions_of
+from actum_model_trainer.provenance import TrainingError, actions_of
 from actum_model_trainer.sample_reading import samples_from
+from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train_to_spot
 from model_trainer.folds import folds_of
 from som_classifier.presets import Preset
@@ -52,7 +53,7 @@ def evaluate_set(recordings: Sequence[Recording], preset: Preset, progress: Prog
     """Leave each person out in turn, or else shares of the examples, and pool the answers.
 
     Raises:
-        TrainingError: fewer than two actions, or what is left makes no model.
+        TrainingError: fewer than two actions, or so few examples that a part without them makes no model.
         RecordingError: a file is damaged.
     """
     samples = samples_from(recordings, progress)
@@ -63,6 +64,7 @@ def evaluate_set(recordings: Sequence[Recording], preset: Preset, progress: Prog
     for fold in folds:
         within = prefixed(f"{fold.name}: ", progress)
         rest = [sample for sample in samples.usable if not fold.holds_sample(sample)]
+        _refuse_single_examples(samples.usable, rest)
         streams = [stream for stream in map(fold.without, samples.streams) if len(stream.stamps_ns)]
         model = train_to_spot(rest, streams, preset, progress=within)
         for sample in filter(fold.holds_sample, samples.usable):
@@ -73,3 +75,14 @@ def evaluate_set(recordings: Sequence[Recording], preset: Preset, progress: Prog
             held = [recording for recording in recordings if str(recording.path) in fold.spans]
             found += fold.within(found_by(model, held, within))
     return SetEvaluation(by, Evaluation(tuple(predictions)), scores_of(found) if finds else None)
+
+
+def _refuse_single_examples(samples: Sequence[SegmentSample], rest: Sequence[SegmentSample]) -> None:
+    """Refuse a test that would train on fewer than two actions, because a fold holds all examples of the others."""
+    left = {sample.label for sample in rest}
+    if len(left) < 2:
+        lost = ", ".join(repr(label) for label in sorted({sample.label for sample in samples} - left))
+        raise TrainingError(
+            f"the test leaves out a third of the examples in turn, which can be all that there are of {lost}: record "
+            "at least two examples of each action"
+        )

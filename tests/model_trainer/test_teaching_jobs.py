@@ -177,6 +177,15 @@ def test_what_cannot_be_trained_fails_with_the_reason(teacher: Teacher, finish: 
         teacher.ask("train", set="kitchen", preset="none")
 
 
+def test_a_test_for_which_an_action_has_too_few_examples_says_which(teacher: Teacher, finish: Finish) -> None:
+    for each in [each for each in teacher.examples() if each["label"] == "wave"][1:]:
+        teacher.ask("delete", set="kitchen", example=each["id"])
+    teacher.ask("evaluate", set="kitchen")
+    assert finish()["message"].endswith(
+        "which can be all that there are of 'wave': record at least two examples of each action"
+    )
+
+
 def test_a_damaged_take_is_named_where_it_lies(teacher: Teacher, finish: Finish) -> None:
     damaged = teacher.folder / "sets/kitchen/take-0001.mcap"
     damaged.write_bytes(b"no recording")
