@@ -287,7 +287,7 @@ OF_TRAINER: Mapping[str, Problem] = {
         "names the mark.",
     ),
     "unreadable_file": Problem(
-        "A set, take or model in `ACTUM_TRAINER_DATA` cannot be read; all others are listed.",
+        "A set, take or model in `ACTUM_TRAINER_DATA` cannot be read, or not to its end; all others are listed.",
         "Repair or move the file that the latest error, or `unreadable` in the reply to `list`, names.",
     ),
     "lost_model": Problem(

@@ -73,7 +73,7 @@ class SetListed(Reply):
     takes: list[TakeListed]
     """Its recordings."""
     unreadable: list[str]
-    """Of each file in it that cannot be read, why."""
+    """Of each file in it that cannot be read, or not to its end, why."""
 
 
 class ModelListed(Reply):

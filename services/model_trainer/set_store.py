@@ -16,6 +16,7 @@ from pydantic import BaseModel
 from actum.atomic_file import clear_unfinished, give_name, store_names, write_whole
 from actum.codec import encodable
 from actum.commands import Refusal
+from actum.mcap_file import AGAIN
 from actum.recorder import Recorder, is_being_written
 from actum.recording import Recording, RecordingError
 from actum_examples.take import CREATED, KIND, Take, read_take
@@ -50,7 +51,7 @@ class Description(BaseModel):
 @dataclass(frozen=True)
 class StoredSet:
     """A set: its name, when it was made (ISO 8601; empty where that cannot be read), its takes, and of each file that
-    cannot be read why."""
+    cannot be read, or not to its end, why."""
 
     name: str
     created: str
@@ -116,6 +117,8 @@ class SetStore:
         for path in sorted(each for each in folder.iterdir() if each.name.endswith(SUFFIX)):
             try:
                 takes.append(self._take(path))
+                if takes[-1].recording.truncated:
+                    unreadable.append(f"{path}: the recording breaks off, and its examples may be lost; {AGAIN}")
             except (OSError, RecordingError) as error:
                 unreadable.append(str(error))
         return StoredSet(encodable(name), created, tuple(takes), tuple(map(encodable, unreadable)))

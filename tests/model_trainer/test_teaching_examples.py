@@ -187,6 +187,16 @@ def test_a_damaged_file_in_a_set_is_named_and_the_others_are_there(teacher: Teac
     assert kitchen["actions"] == {"goggles": 5}
 
 
+def test_a_take_that_breaks_off_is_told_because_its_examples_may_be_lost(teacher: Teacher) -> None:
+    take = teacher.folder / "sets/kitchen/take-0001.mcap"
+    take.write_bytes(take.read_bytes()[: -(take.stat().st_size // 2)])
+    (kitchen,) = teacher.ask("list")["sets"]
+    assert kitchen["actions"] == {"goggles": 5}
+    assert kitchen["unreadable"] == [
+        f"{take}: the recording breaks off, and its examples may be lost; record or import the recording again"
+    ]
+
+
 def test_a_film_shows_fifteen_bodies_a_second(teacher: Teacher) -> None:
     example = first(teacher)
     film = teacher.ask("film", set="kitchen", example=example["id"])
