@@ -41,18 +41,20 @@ class Teacher:
         self.jobs: list[ScriptedJob] = []
         self.told: list[Training] = []
         self._stamp_ns = SECOND_NS
-        self._ticks = 0
+        self._ticks = self._starts = 0
         self._start = start or self._scripted
         self.begin()
 
     def begin(self) -> None:
-        """Start the trainer anew."""
+        """Start the trainer anew, some milliseconds after the one before."""
+        self._starts += 1
+        now_ns = 1_700_000_000 * SECOND_NS + self._starts * 2_000_000
         self.trainer = ModelTrainer(
             self.folder,
             self.model,
             "kinect0",
             self._start,
-            lambda: 1_700_000_000 * SECOND_NS,
+            lambda: now_ns,
             OriginalModel(self.original, self.model),
         )
         self._commands = {command.name: command for command in self.trainer.commands}

@@ -14,10 +14,11 @@ P = ParamSpec("P")
 
 
 class Changes:
-    """Counts the changes of sets and models."""
+    """Counts the changes of sets and models, from the start's time on: a page that knows the revision of a trainer
+    before this one has to list anew."""
 
-    def __init__(self) -> None:
-        self.revision = 0
+    def __init__(self, start_ns: int) -> None:
+        self.revision = start_ns // 1_000_000
 
     def made(self, change: Callable[P, object], *args: P.args, **kwargs: P.kwargs) -> Done:
         """Make a change by a function and its arguments, count the change, and return the reply.

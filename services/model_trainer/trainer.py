@@ -53,7 +53,7 @@ class ModelTrainer:
         self._original = original
         self._copy_original()
         self._sensor = sensor
-        self._changes = Changes()
+        self._changes = Changes(now_ns())
         sets = SetStore(folder / "sets", now_ns)
         self._models = ModelStore(folder / "models", model, folder / MODEL, now_ns)
         self._examples = ExampleCommands(sets, self._models, self._changes)

@@ -170,6 +170,16 @@ def test_a_sensor_that_pauses_during_a_take_is_said_to_pause(room: Lesson, teach
     phase.get_by_text("The sensor publishes nothing: the take waits for it").wait_for(timeout=10_000)
 
 
+def test_what_changed_while_no_trainer_ran_is_shown_once_one_does(room: Lesson, teach: Any) -> None:
+    teach.locator("#set").get_by_text("wave × 5").wait_for()
+    room.teacher.begin()
+    teach.locator("#set").get_by_text("wave × 5").wait_for()
+    (room.teacher.folder / f"sets/{SET}/take-0001.mcap").unlink()
+    room.teacher.begin()
+    teach.locator("#examples").get_by_text("No examples yet").wait_for()
+    teach.locator("#set").get_by_text("No examples yet").wait_for()
+
+
 def test_what_was_said_of_a_set_is_gone_once_another_is_shown(room: Lesson, teach: Any) -> None:
     record(teach, "swing", 3)
     room.see(Stream().repeat(WAVES[:2]).then(rest(1)).skeletons(first_ns=10**12))
