@@ -274,6 +274,23 @@ def test_a_video_is_sent_whole_and_read_as_a_job(room: Lesson, teach: Any, tmp_p
     says(teach, "video", "Failed: wave 2.mp4 is no video")
 
 
+def test_what_went_wrong_with_one_of_several_videos_stays_while_the_next_ones_are_read(
+    room: Lesson, teach: Any, tmp_path: Path
+) -> None:
+    clips = [tmp_path / name for name in ("wave 1.mp4", "a!.mp4", "wave 2.mp4", "wave 3.mp4")]
+    for clip in clips:
+        clip.write_bytes(b"x")
+    teach.get_by_label("Drop a video anywhere").set_input_files(clips)
+    wait_until(lambda: len(room.teacher.jobs) == 1, "the first is imported")
+    room.end_job(None, "the video shows no person who moves")
+    wait_until(lambda: len(room.teacher.jobs) == 2, "the third is imported, as the second is refused", 10)
+    room.end_job(None, "no video")
+    wait_until(lambda: len(room.teacher.jobs) == 3, "the last is imported", 10)
+    before = teach.get_by_role("list", name="Videos before this one").get_by_role("listitem").all_text_contents()
+    assert [text.partition(":")[0] for text in before] == ["wave 1.mp4", "a!.mp4", "wave 2.mp4"]
+    assert "the video shows no person who moves" in before[0] and "'a!' cannot be a name" in before[1]
+
+
 DROP = """([name, rounds]) => {
   const dataTransfer = new DataTransfer();
   dataTransfer.items.add(new File([new Uint8Array(256 * rounds).map((_, i) => i % 256)], name));

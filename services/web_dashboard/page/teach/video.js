@@ -19,18 +19,20 @@ class Videos {
   constructor(form) {
     Object.assign(this, { form, waiting: [], busy: false, jobId: null });
     this.line = outcome();
+    this.before = element("ul", { class: "doubts", "aria-label": "Videos before this one" });
     this.job = new JobView(["import"], (job) => this.ended(job));
     this.choice = element("input", { type: "file", accept: "video/*", multiple: true, id: "video-file" });
     this.choice.addEventListener("change", () => this.take(this.choice.files));
     const zone = element("label", { class: "zone", for: "video-file" }, element("span", {}, "Drop a video anywhere on the page, or choose one"), this.choice);
     this.card = card("video", "Or from a video", {}, zone,
       element("p", { class: "caption" }, "Action, person and number are taken from the form Record. Without an action there, the file's name is the action. Film the whole person from the front."),
-      this.line, this.job.element);
+      this.before, this.line, this.job.element);
     trainer.onChoice(() => this.forget());
     this.watchDrops();
   }
 
   forget() {
+    this.before.replaceChildren();
     say(this.line, "");
     this.job.quiet();
   }
@@ -52,6 +54,7 @@ class Videos {
   }
 
   take(files) {
+    if (!this.busy) this.before.replaceChildren();
     this.waiting.push(...files);
     this.next();
   }
@@ -61,6 +64,7 @@ class Videos {
     if (this.busy || !this.waiting.length) return;
     this.busy = true;
     const file = this.waiting.shift();
+    this.name = file.name;
     this.choice.value = "";
     this.job.quiet();
     const job = await this.send(file);
@@ -92,8 +96,11 @@ class Videos {
     this.go();
   }
 
+  // The next file's outcome takes the place of this one's: what went wrong is kept above it.
   go() {
     this.busy = false;
+    const wrong = [this.line, this.job.line].filter((line) => this.waiting.length && line.classList.contains("refused"));
+    this.before.append(...wrong.map((line) => element("li", { class: "doubt" }, `${this.name}: ${line.textContent}`)));
     this.next();
   }
 }
