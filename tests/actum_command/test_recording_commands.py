@@ -121,6 +121,17 @@ def test_what_is_done_five_times_is_counted_cut_and_shown(live: Live, tmp_path: 
     assert [each.stamp_ns for each in marks[::2]] == pytest.approx(near_ns, abs=4e8)
 
 
+@pytest.mark.parametrize("times", [(), ("--times", 5)])
+@pytest.mark.parametrize("label", ["", "x" * 201])
+def test_a_label_that_no_mark_can_hold_is_refused_before_the_recording(
+    live: Live, tmp_path: Path, label: str, times: tuple[object, ...]
+) -> None:
+    live.comes(*five_waves().then(rest(6)).skeletons(), mark("start", 2, "mine", origin=MANUAL))
+    refusal = refused("record", tmp_path / "a.mcap", "--label", label, *times)
+    assert f"the label has {len(label)} characters: use 1 to 200 characters" in refusal
+    assert not list(tmp_path.iterdir())
+
+
 def test_what_is_repeated_with_nobody_there_is_told(live: Live, tmp_path: Path) -> None:
     live.comes(skeleton(1))
     assert "nobody was in view" in invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5).stdout

@@ -17,6 +17,7 @@ from actum_command.commands.recording_options import (
     PersonOption,
     RecordingFile,
     chosen,
+    refuse_label,
     tell_unread,
 )
 from actum_command.commands.terminal import fail, failing_on, refuse_unwritable, refuse_without, say
@@ -44,7 +45,6 @@ SegmentName = Annotated[
 ]
 Label = Annotated[str, typer.Argument(metavar="LABEL", help="label of the action, such as wave")]
 NewLabel = Annotated[str, typer.Argument(metavar="LABEL", help="the new label of the segment, such as wave")]
-LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
 
 @app.command(LISTS)
@@ -127,7 +127,7 @@ def delete(file: RecordingFile, name: SegmentName) -> None:
 def relabel(file: RecordingFile, name: SegmentName, label: NewLabel) -> None:
     """Change the label of a segment in a recording."""
     take, segment = _found(file, name)
-    _refuse_length(label)
+    refuse_label(label)
     with _editing(file):
         edits.relabel(take, segment, label)
     say(f"{segment.segment_id} is labelled {label!r} in {file}")
@@ -151,7 +151,7 @@ def add(
     Example: actum label add wave.mcap 12.3 14.1 wave
     """
     take = _opened(file)
-    _refuse_length(label)
+    refuse_label(label)
     with _editing(file):
         start_ns, end_ns = (_in_ns(each, f"{each:g}", "a number of seconds such as 12.3") for each in (start, end))
         edits.add(take, take.first_ns + start_ns, take.first_ns + end_ns, label, agent)
@@ -173,7 +173,7 @@ def cut(
     Segments that were marked or moved by hand stay unchanged.
     """
     take = _opened(file)
-    _refuse_length(label)
+    refuse_label(label)
     with _editing(file):
         cuts = edits.cut_again(take, times, label)
     for line in cut_lines(cuts, take.first_ns):
@@ -265,9 +265,3 @@ def _in_ns(seconds: float | str, shown: str, advice: str) -> int:
         return round(float(seconds) * SECOND_NS)
     except (ValueError, OverflowError):
         fail(f"{shown} is not a time: give {advice}")
-
-
-def _refuse_length(label: str) -> None:
-    """Fail where a label is empty, or too long for a mark."""
-    if not 0 < len(label) <= LONGEST_LABEL:
-        fail(f"the label has {len(label)} characters: use 1 to {LONGEST_LABEL} characters")

@@ -16,7 +16,7 @@ from actum.recording import RecordingError
 from actum.rewriting import finish as finished
 from actum.rewriting import rewrite, unchanged
 from actum.runtime import stop_on_signals
-from actum_command.commands.recording_options import refuse_output
+from actum_command.commands.recording_options import refuse_label, refuse_output
 from actum_command.commands.service_flags import with_flags_of
 from actum_command.commands.terminal import connect, fail, say
 from actum_command.history.event_recorder import keep_events
@@ -123,6 +123,8 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     refuse_output(output)
     if times is not None and label is None:
         fail("--times needs the name of the repeated action: add --label NAME")
+    if label is not None:
+        refuse_label(label)
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
     try:

@@ -44,6 +44,7 @@ AllOption = Annotated[
         ),
     ),
 ]
+LONGEST_LABEL = 200  # characters allowed in the field of a mark
 
 
 def chosen(files: list[Path], person: str | None, with_excluded: bool) -> list[Recording]:
@@ -64,6 +65,12 @@ def refuse_output(output: Path, ending: str = ".mcap") -> None:
     refuse_unwritable(output, ending)
     with failing_on(TakenError):
         refuse_taken(output)
+
+
+def refuse_label(label: str) -> None:
+    """Fail where a label is empty, or too long for a mark."""
+    if not 0 < len(label) <= LONGEST_LABEL:
+        fail(f"the label has {len(label)} characters: use 1 to {LONGEST_LABEL} characters")
 
 
 def tell_unread(recordings: Iterable[Recording]) -> None:
