@@ -152,6 +152,18 @@ def test_a_recording_that_lacks_repetitions_is_left_out_of_training(live: Live, 
     assert Recording(tmp_path / "a.mcap").metadata["excluded"] == "true"
 
 
+def test_a_recording_that_lacks_repetitions_and_cannot_be_left_out_of_training_is_told(
+    live: Live, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(recording_commands, "rewrite", full)
+    live.comes(*five_waves().skeletons())
+    refusal = refused("record", tmp_path / "a.mcap", "--label", "wave", "--times", 12, "--seconds", 3)
+    assert "could not be marked as excluded (No space left on device)" in refusal
+
+
 def test_marks_by_hand_are_stored_beside_the_cuts_where_they_are_asked_for(live: Live, tmp_path: Path) -> None:
     live.comes(*five_waves().skeletons(), mark("start", 2, "mine", origin=MANUAL), mark("end", 3, "mine"))
     told = invoke("record", tmp_path / "a.mcap", "--label", "wave", "--times", 5, "--marks", "manual").stdout

@@ -199,7 +199,7 @@ def _repeating(stream: StreamRecorder, label: str, times: int, stop: threading.E
 def _report_cuts(repeating: RepetitionRecorder, output: Path) -> None:
     """Print the cuts, what may be wrong with them, and how to mend it."""
     if repeating.lacks_some:
-        rewrite(output, unchanged, metadata={"excluded": "true"})
+        _exclude(output)
         say(
             "training leaves this recording out, because it would learn the missing repetitions as background; once "
             "you have labelled them with 'actum label', train with --all",
@@ -217,6 +217,17 @@ def _report_cuts(repeating: RepetitionRecorder, output: Path) -> None:
         f"to look at the repetitions: actum label picture {output} -o {output.with_suffix('.png')}; to correct them: "
         "actum label --help"
     )
+
+
+def _exclude(output: Path) -> None:
+    """Have training leave a recording out; fail where that cannot be stored, for training would use it."""
+    try:
+        rewrite(output, unchanged, metadata={"excluded": "true"})
+    except OSError as error:
+        fail(
+            f"repetitions are missing in {output}, and the recording could not be marked as excluded "
+            f"({error.strerror}), so training would learn the missing repetitions as background: delete {output}"
+        )
 
 
 def _report(stream: StreamRecorder, output: Path, label: str | None) -> None:
