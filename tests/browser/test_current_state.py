@@ -180,6 +180,20 @@ def test_what_changed_while_no_trainer_ran_is_shown_once_one_does(room: Lesson, 
     teach.locator("#set").get_by_text("No examples yet").wait_for()
 
 
+def test_examples_that_are_shown_no_more_take_no_memory(room: Lesson, teach: Any) -> None:
+    devtools = teach.context.new_cdp_session(teach)
+    nodes = []
+    for _ in range(6):
+        choose(teach, "garden")
+        teach.locator("#examples").get_by_text("No examples yet").wait_for()
+        choose(teach, SET)
+        teach.locator(".example canvas.film").last.wait_for()
+        devtools.send("HeapProfiler.collectGarbage")
+        nodes.append(devtools.send("Memory.getDOMCounters")["nodes"])
+    of_examples = teach.locator(".example *").count()
+    assert nodes[-1] - nodes[1] < 2 * of_examples, nodes
+
+
 def test_what_was_said_of_a_set_is_gone_once_another_is_shown(room: Lesson, teach: Any) -> None:
     record(teach, "swing", 3)
     room.see(Stream().repeat(WAVES[:2]).then(rest(1)).skeletons(first_ns=10**12))

@@ -1,5 +1,7 @@
 // Building the page's elements. Text is set as text, so that what services say is never read as markup.
 
+import { dark } from "./colours.js";
+
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
@@ -19,6 +21,10 @@ export function card(id, title, { controls = [], wide = false } = {}, ...childre
     element("div", { class: "card-head" }, heading, ...controls), ...children);
 }
 
+const redraws = new WeakMap();  // by canvas: a listener of each would keep those that have left the page
+
+dark.addEventListener("change", () => document.querySelectorAll("canvas").forEach((canvas) => redraws.get(canvas)?.()));
+
 // A canvas that fills its box; `draw(context, width, height)` is called with its size in CSS pixels. Returns redraw().
 export function drawn(canvas, draw) {
   const context = canvas.getContext("2d");
@@ -34,7 +40,7 @@ export function drawn(canvas, draw) {
     if (width && height) draw(context, width, height);
   };
   new ResizeObserver(redraw).observe(canvas);
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  redraws.set(canvas, redraw);
   return redraw;
 }
 
