@@ -180,6 +180,17 @@ def test_what_changed_while_no_trainer_ran_is_shown_once_one_does(room: Lesson, 
     teach.locator("#set").get_by_text("No examples yet").wait_for()
 
 
+def test_the_postures_of_people_who_have_gone_take_no_memory(scene: Scene, open_page: Open) -> None:
+    kept = open_page(scene.page.address).evaluate("""async () => {
+      const { link } = await import('/page/link.js');
+      const { newestPosture } = await import('/page/live/people.js');
+      const agents = Array.from({ length: 1000 }, (_, i) => 10_000 + i);
+      for (const agent of agents) link.tell("posture", { agent });
+      return agents.filter(newestPosture);
+    }""")
+    assert len(kept) < 100 and kept[-1] == 10_999
+
+
 def test_examples_that_are_shown_no_more_take_no_memory(room: Lesson, teach: Any) -> None:
     devtools = teach.context.new_cdp_session(teach)
     nodes = []

@@ -2,6 +2,7 @@
 
 import { link } from "../link.js";
 
+const MOST_PEOPLE = 64;     // people come with ever new numbers
 const NEWEST = new Map();
 let skeleton = { agents: [], stamp_ns: 0 };
 let cameAt = 0;
@@ -14,7 +15,10 @@ link.on("skeleton", (message) => {
   cameAt = performance.now();
   people.present = message.agents.map(({ agent }) => agent);
 });
-link.on("posture", (message) => NEWEST.set(message.agent, message));
+link.on("posture", (message) => {
+  if (NEWEST.size > MOST_PEOPLE) NEWEST.clear();
+  NEWEST.set(message.agent, message);
+});
 
 export function shownAgent() {
   return people.present.includes(people.chosen) ? people.chosen : (people.present[0] ?? people.chosen);
