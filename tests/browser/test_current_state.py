@@ -180,6 +180,17 @@ def test_what_changed_while_no_trainer_ran_is_shown_once_one_does(room: Lesson, 
     teach.locator("#set").get_by_text("No examples yet").wait_for()
 
 
+def test_what_ended_without_this_page_is_told(room: Lesson, teach: Any) -> None:
+    record(teach, "swing", 3)
+    room.teacher.ask("discard")
+    teach.locator("#record").get_by_text("This take was not kept: it was discarded on another page").wait_for()
+    teach.evaluate("() => { location.hash = 'models' }")
+    press(teach, "Train")
+    wait_until(lambda: bool(room.teacher.jobs), "it is trained")
+    room.teacher.begin()
+    teach.locator("#training").get_by_text("Cancelled: the service ended while this job ran").wait_for()
+
+
 def test_the_postures_of_people_who_have_gone_take_no_memory(scene: Scene, open_page: Open) -> None:
     kept = open_page(scene.page.address).evaluate("""async () => {
       const { link } = await import('/page/link.js');

@@ -6,6 +6,7 @@ import { guarded } from "./guarded.js";
 import { trainer } from "./trainer.js";
 
 const KINDS = { train: "Training", evaluate: "Testing", import: "Reading the video" };
+const CANCELLED = "cancelled";    // the message of one that somebody cancelled
 
 // Shows jobs of some kinds while they run; calls `ended(job)`, with its result, once for each that has ended.
 export class JobView {
@@ -60,7 +61,14 @@ export class JobView {
     }
     if (job.state === "running") return this.over.delete(id);  // the message was older than the job
     if (this.running === id) this.running = null;
-    say(this.line, { failed: `Failed: ${job.message}`, cancelled: "Cancelled." }[job.state] ?? job.message, job.state === "failed");
+    say(this.line, ...told(job));
     this.ended(job);
   }
+}
+
+// What became of a job, and whether that was not wanted: a trainer that is started anew cancels what ran before.
+function told({ state, message }) {
+  if (state === "done") return [message];
+  if (message === CANCELLED) return ["Cancelled."];
+  return [`${state === "failed" ? "Failed" : "Cancelled"}: ${message}`, true];
 }

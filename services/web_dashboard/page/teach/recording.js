@@ -9,6 +9,7 @@ import { simulatedPerson } from "./simulated.js";
 
 const USUAL = 5;          // repetitions: fewer say little of how they differ
 const MOST = 40;
+const GONE = "This take was not kept: it was discarded on another page, or the trainer was started anew.";
 
 export function recording() {
   const made = new Recording();
@@ -91,6 +92,7 @@ class Recording {
     this.mark.hidden = take?.kind !== "action";
     if (began) this.began(isFocused);
     if (ended && take) this.ended(take, isFocused);
+    else if (ended && !this.line.textContent) say(this.line, GONE, true);
     this.view.show(take);
   }
 
