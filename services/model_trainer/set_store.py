@@ -79,6 +79,21 @@ class SetStore:
                     _clear(path)
                 elif path.is_dir():
                     clear_unfinished(path)
+        self._modified = self._times()
+
+    def look(self) -> bool:
+        """Look whether anybody, also another program, has changed the sets since the look before, and return that."""
+        before, self._modified = self._modified, self._times()
+        return before != self._modified
+
+    def _times(self) -> dict[str, int]:
+        """Return when each set's folder was modified (ns): files are replaced whole."""
+        times = dict[str, int]()
+        with suppress(OSError):  # the folder has vanished; so has a set's, if its time cannot be read
+            for path in self._folder.iterdir():
+                if not path.name.startswith("."):
+                    times[path.name] = path.stat().st_mtime_ns
+        return times
 
     def names(self) -> list[str]:
         """List the sets by name.

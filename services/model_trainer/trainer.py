@@ -31,7 +31,7 @@ PUBLISH_NS = SECOND_NS // 5
 REPEAT_NS = SECOND_NS
 """Longest time between two messages (ns): who comes late waits no longer."""
 LOOK_NS = SECOND_NS
-"""Interval (ns) at which it is looked whether somebody else has replaced the model in use."""
+"""Interval (ns) at which it is looked whether somebody else has replaced the model in use, or changed a set."""
 
 
 class ModelTrainer:
@@ -54,7 +54,7 @@ class ModelTrainer:
         self._copy_original()
         self._sensor = sensor
         self._changes = Changes(now_ns())
-        sets = SetStore(folder / "sets", now_ns)
+        sets = self._sets = SetStore(folder / "sets", now_ns)
         self._models = ModelStore(folder / "models", model, folder / MODEL, now_ns)
         self._examples = ExampleCommands(sets, self._models, self._changes)
         self._takes = TakeCommands(sets, self._changes, self._examples.remove)
@@ -71,6 +71,7 @@ class ModelTrainer:
         self._set_commands = SetCommands(sets, self._models, self._changes, self._takes, self._jobs, self.counters)
         self._model_commands = ModelCommands(self._models, self._changes)
         self._newest_ns = 0
+        self._looked_revision = self._changes.revision
         self._published: Training | None = None
         self._published_ns = self._looked_ns = 0
 
@@ -119,7 +120,7 @@ class ModelTrainer:
         self._jobs.look()
         if abs(now_ns - self._looked_ns) >= LOOK_NS:
             self._looked_ns = now_ns
-            self._look_at_model()
+            self._look_at_files()
         state = self._state()
         if self._published is not None:
             changed = state != self._published.model_copy(update={"stamp_ns": state.stamp_ns})
@@ -128,10 +129,13 @@ class ModelTrainer:
         self._published, self._published_ns = state, now_ns
         return [state]
 
-    def _look_at_model(self) -> None:
+    def _look_at_files(self) -> None:
         try:
             self._copy_original()
             self._changes.revision += self._models.look()
+            is_others = self._sets.look() and self._changes.revision == self._looked_revision
+            self._changes.revision += is_others  # changes of our own are counted already
+            self._looked_revision = self._changes.revision
         except OSError as error:
             self.counters.reject("lost_model", f"no copy of the model in use could be kept: {error}")
         if self._original is not None:

@@ -302,6 +302,17 @@ def test_the_revision_rises_with_each_change_and_stays_with_each_refusal(teacher
     assert teacher.tick().revision == before + 1
 
 
+def test_the_revision_rises_where_another_program_has_changed_a_set(teacher: Teacher) -> None:
+    before = teacher.tick(20).revision
+    assert teacher.tick(20).revision == before
+    take = read_take(Recording(teacher.folder / "sets/kitchen/take-0001.mcap"))
+    edits.relabel(take, take.examples[0], "greet")
+    relabelled = teacher.tick(20).revision
+    assert relabelled > before, "or pages go on showing what was there"
+    shutil.copytree(teacher.folder / "sets" / "kitchen", teacher.folder / "sets" / "garden")
+    assert teacher.tick(20).revision > relabelled
+
+
 def test_a_file_that_cannot_be_written_changes_nothing(teacher: Teacher, monkeypatch: pytest.MonkeyPatch) -> None:
     example = first(teacher)
 
