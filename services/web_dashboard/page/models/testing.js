@@ -24,7 +24,7 @@ export function testing() {
     job.start("evaluate", { set: trainer.set?.name ?? "" });
   };
   const form = element("form", { class: "row", on: { submit: submitted } }, field("Set to test", setChoice()), element("button", { class: "primary" }, "Test"));
-  const about = element("p", { class: "caption" }, "Trains on all people but one and tests on that person, for each person in turn. With one person, a third of the examples is left out instead.");
+  const about = element("p", { class: "caption" }, "Trains on all people but one and tests on that person, for each person in turn. If one person alone shows an action, a third of the examples is left out instead.");
   return card("testing", "Test", {}, form, about, job.element, results, sentences.element);
 }
 
