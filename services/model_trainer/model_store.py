@@ -180,9 +180,9 @@ class ModelStore:
             self.loaded = self.active = self.set = None
             return
         self.active = self.loaded.id
-        self._keep_copy(self._watched, self.active)
         about = described(self._path(self.active))
         self.set = (about and about.set) or None
+        self._keep_copy(self._watched, self.active)
 
     def _keep_copy(self, file: Path, model_id: str) -> None:
         """Keep a copy of a file, which is a model of that id, where there is none.

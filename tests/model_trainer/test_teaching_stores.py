@@ -118,6 +118,19 @@ def test_a_model_in_use_of_which_no_copy_was_kept_is_copied_before_it_is_replace
     assert teacher.ask("undo") and teacher.tick(12).model == used
 
 
+def test_a_model_of_which_no_copy_can_be_kept_is_not_said_to_be_of_the_set_of_the_one_before(
+    teacher: Teacher, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    about = next((teacher.folder / "models").glob("*.json"))
+    about.write_text(json.dumps(json.loads(about.read_text()) | {"set": "kitchen"}))
+    teacher.begin()
+    assert teacher.tick(20).model_set == "kitchen"
+    tiny_model(TINY_PAPER).save(teacher.model)
+    monkeypatch.setattr("os.fsync", lambda _: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+    told = teacher.tick(20)
+    assert teacher.trainer.counters.rejects["lost_model"] and told.model_set is None
+
+
 def test_a_job_names_no_file_but_its_own(teacher: Teacher) -> None:
     teacher.ask("cancel", job=teacher.ask("train", set="kitchen")["id"])
     job = json.loads((teacher.folder / "jobs/job-1.json").read_text())
