@@ -1,5 +1,6 @@
 """Before a whole system starts: checks of its source and endpoint, and what is printed of its model."""
 
+import errno
 import socket
 import threading
 import time
@@ -44,6 +45,14 @@ SENSORS = {"none": None, "simulator": "scene_simulator"}
 
 LOCAL = "127.0.0.1"
 """Address at which free ports are looked for: pages listen on it by default."""
+
+LISTEN_REMEDIES = {
+    errno.EADDRINUSE: "stop the program that uses this port, or set ACTUM_CONNECT to an endpoint with another port",
+    errno.EACCES: "set ACTUM_CONNECT to an endpoint with a port of 1024 or more",
+}
+"""What to do if a router cannot listen, by the system's error."""
+OWN_ADDRESS = "set ACTUM_CONNECT to an address of this machine, or to tcp/0.0.0.0:7447, which is all its addresses"
+"""What to do if a router cannot listen because another machine, or none, has the address."""
 
 SCENE_MARKS = "the simulated scene marks its own actions, as a switch would"
 """How actions are found where the simulated scene marks them."""
@@ -150,10 +159,8 @@ def refuse_taken(endpoint: str) -> None:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             probe.bind(place)
     except OSError as error:
-        raise SettingsError(
-            f"the router cannot listen at {endpoint} ({error.strerror}): stop the program that uses this port, or set "
-            "ACTUM_CONNECT to an endpoint with another port"
-        ) from None
+        remedy = LISTEN_REMEDIES.get(error.errno or 0, OWN_ADDRESS)
+        raise SettingsError(f"the router cannot listen at {endpoint} ({error.strerror}): {remedy}") from None
 
 
 def wait_for_router(here: ServiceSettings, stop: threading.Event) -> None:

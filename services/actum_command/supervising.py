@@ -144,6 +144,7 @@ class Supervisor:
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=subprocess.STDOUT if self._log else None,
+            process_group=0,  # a terminal's Ctrl-C then reaches this process alone, which ends the others with SIGTERM
         )
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from actum.installing import install_command
 from actum.runtime import needs_extra
-from actum.runtime.serving import UNUSABLE
+from actum.runtime.serving import INTERRUPTED, UNUSABLE
 
 WITHOUT = """
 import runpy, sys
@@ -43,3 +43,9 @@ def test_a_service_without_its_extra_says_which_it_needs(service: str, package: 
 def test_a_part_that_is_missing_of_what_is_installed_is_a_bug_and_crashes() -> None:
     with pytest.raises(ModuleNotFoundError), needs_extra("marker-tracker"):
         import actum.no_such_part  # noqa: F401
+
+
+def test_an_interrupt_while_packages_are_imported_ends_a_process_without_a_traceback() -> None:
+    with pytest.raises(SystemExit) as ended, needs_extra("marker-tracker"):
+        raise KeyboardInterrupt
+    assert ended.value.code == INTERRUPTED

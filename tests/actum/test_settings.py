@@ -10,7 +10,7 @@ import pytest
 from pydantic import ValidationError
 
 from actum.command_line import from_command_line
-from actum.runtime.serving import UNUSABLE, configured, log_level
+from actum.runtime.serving import INTERRUPTED, UNUSABLE, configured, log_level
 from actum.runtime.session import client_config
 from actum.settings import ServiceSettings, SettingsError, complaint, host_and_port
 from marker_tracker.settings import Settings as TrackerSettings
@@ -171,3 +171,12 @@ def test_a_log_level_that_there_is_not_is_refused_in_a_line(
         configured(ServiceSettings, lambda _: None, [])
     assert ended.value.code == UNUSABLE
     assert "ACTUM_LOG: 'verbose' is not a log level" in capsys.readouterr().err
+
+
+def test_an_interrupt_while_a_service_is_built_ends_it_without_a_traceback() -> None:
+    def interrupted(_: ServiceSettings) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(SystemExit) as ended:
+        configured(ServiceSettings, interrupted, [])
+    assert ended.value.code == INTERRUPTED

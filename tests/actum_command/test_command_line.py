@@ -384,6 +384,16 @@ def test_a_router_listens_on_either_family(host: str, served: list[str | None]) 
     assert served == [f"tcp/{host}:{port}"]
 
 
+@pytest.mark.parametrize("command", [("router", "--listen"), ("up", "--connect")])
+def test_a_router_at_an_address_that_this_machine_does_not_have_is_advised_to_use_its_own(
+    command: tuple[str, str], served: list[str | None]
+) -> None:
+    foreign = refused(*command, "tcp/192.0.2.1:7447")  # an address that no machine has: RFC 5737
+    assert "set ACTUM_CONNECT to an address of this machine" in foreign
+    assert "stop the program" not in foreign
+    assert served == []
+
+
 @pytest.mark.parametrize(
     ("arguments", "complaint"),
     [([""], "segment_id: "), (["x" * 1000], "segment_id: "), (["a", "--agent", "9999999999"], "agent: ")],

@@ -53,6 +53,15 @@ def test_what_is_killed_is_another_process_afterwards(tmp_path: Path) -> None:
         supervisor.process_id(waiting)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="has no process groups")
+def test_a_terminals_interrupt_reaches_the_supervisor_alone(tmp_path: Path) -> None:
+    (tmp_path / "waiting.py").write_text("import time; time.sleep(60)")
+    waiting = Program("worker", "waiting", environment={"PYTHONPATH": str(tmp_path)})
+    with Supervisor(tmp_path / "log") as supervisor:
+        supervisor.start(waiting)
+        assert os.getpgid(supervisor.process_id(waiting)) != os.getpgrp()
+
+
 def test_what_runs_elsewhere_is_tried_again_now_and_then(
     ending: type[Program], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -39,11 +39,15 @@ searches also among older ones; and after a hundred of those among all. With cro
 search all of them stops the service for a tenth of a second. By Python's own limits that would be every second."""
 TAKEN = 3
 """Exit code of a process whose service another process runs already."""
+INTERRUPTED = 130
+"""Exit code of a process that SIGINT ends while it starts, as shells have it."""
 
 
 @contextmanager
 def needs_extra(name: str) -> Iterator[None]:
     """Return a context in which to import the packages of an extra: if one is missing, say so and exit with code 2.
+
+    An interrupt ends the process without a traceback.
 
     Raises:
         ModuleNotFoundError: a submodule of an installed package is missing, which is a bug.
@@ -55,6 +59,8 @@ def needs_extra(name: str) -> Iterator[None]:
             raise
         print(f"{error.name} is not installed: run {install_command(name)}", file=sys.stderr)
         sys.exit(UNUSABLE)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
 
 
 class Front(Node, Protocol):
@@ -126,7 +132,10 @@ def run_front(settings_type: type[S], build: Callable[[S], Front]) -> None:
 
 
 def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[str] | None = None) -> tuple[S, N]:
-    """Read the settings, from this process's flags or given ones, and build; if unusable, say why and exit with 2."""
+    """Read the settings, from this process's flags or given ones, and build; if unusable, say why and exit with 2.
+
+    An interrupt ends the process without a traceback.
+    """
     end_with_parent()
     service = settings_type.__module__.partition(".")[0]
     try:
@@ -139,6 +148,8 @@ def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[
         print(f"{service}: {complaint(error)} (see --help)", file=sys.stderr)
     except ValueError as error:
         print(f"{service}: {error}", file=sys.stderr)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)
     sys.exit(UNUSABLE)
 
 
