@@ -17,6 +17,7 @@ from actum_model_trainer.basis import Basis
 from actum_model_trainer.convolution_training import Convolved
 from actum_model_trainer.pooling import PooledVectors
 from actum_model_trainer.provenance import KeptError
+from actum_model_trainer.side_by_side import side_by_side
 from actum_model_trainer.training_data import SampleMeasures, TrainingData
 from som_classifier.model import KEPT, Arrays
 from som_classifier.pyramid_model import PyramidModel
@@ -96,8 +97,11 @@ def reduced(data: TrainingData) -> TrainingData:
     """Return training data with coordinates in the place of vectors."""
     if data.pooled_basis is not None:
         return data
-    pooled = Basis.of_all([*(stage.vectors for stage in data.stages), data.background], RANK)
-    features = Basis.of_all([data.convolved.taught, data.convolved.background], RANK)
+    pooled_and_convolved = (
+        [*(stage.vectors for stage in data.stages), data.background],
+        [data.convolved.taught, data.convolved.background],
+    )
+    pooled, features = side_by_side(lambda parts: Basis.of_all(parts, RANK), pooled_and_convolved)
     return replace(
         data,
         stages=[stage._replace(vectors=pooled.coordinates(stage.vectors)) for stage in data.stages],

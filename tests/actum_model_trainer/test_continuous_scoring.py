@@ -12,6 +12,7 @@ from rich.console import Console
 
 from actum_model_trainer.continuous.continuous_report import continuous_report
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth, point_fractions
+from actum_model_trainer.continuous.matching import intersection_over_union, matched
 from actum_model_trainer.continuous.scoring import ContinuousScores, scores_of
 
 S = 1_000_000_000
@@ -76,6 +77,14 @@ def test_the_order_counts_for_nothing(given_: list[Detection], truths_: list[Tru
     random.shuffle(shuffled)
     random.shuffle(shuffled_truths)
     assert scored(shuffled, shuffled_truths) == scored(given_, truths_)
+
+
+@given(detections, truths)
+def test_all_pairs_at_once_fit_as_those_that_are_matched_one_by_one(
+    given_: list[Detection], truths_: list[Truth]
+) -> None:
+    one_by_one = [match.fit for match in matched(given_, truths_, intersection_over_union)]
+    assert sorted(Found(given_, truths_).pairs.fits().tolist()) == sorted(one_by_one)
 
 
 @given(detections, truths, st.integers(-(10**15), 10**15))

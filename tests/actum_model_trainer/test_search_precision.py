@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection, Found, Stretch, Truth
-from actum_model_trainer.continuous.scoring import event_scores
+from actum_model_trainer.continuous.scoring import background_min, event_scores
 from actum_model_trainer.spotting.threshold_choice import precision, worth_of
 from performers import TINY
 
@@ -77,4 +77,4 @@ def test_each_false_alarm_a_minute_costs_a_tenth_after_the_first_half(minutes: f
     seen = Stretch("file", 1, 0, round(minutes * 60 * SECOND_NS))
     starts_ns = [round(k * 0.5 * SECOND_NS) for k in range(alarms)]
     found = Found([Detection("file", 1, at, at + 1, at + 1, "lift", 1.0) for at in starts_ns], seen=[seen])
-    assert worth_of(event_scores(found)) == pytest.approx(-cost)
+    assert worth_of(event_scores(found, background_min(found.seen, found.truths))) == pytest.approx(-cost)

@@ -2,8 +2,14 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from statistics import median_high
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from actum.arrays import Array, Indices, Mask
 
 
 @dataclass(frozen=True)
@@ -71,6 +77,56 @@ class Stretch(Interval):
     """A time in which a person was seen without a longer break."""
 
 
+class Pairs(NamedTuple):
+    """All n pairs of a detection and a truth of the same file and agent.
+
+    Attributes:
+        detections: (n,), the number of each detection, rising.
+        truths: (n,), the number of each truth in the order of starts, rising among those of a detection.
+        alike: (n,), whether both have the same label.
+        common_ns: (n,), the time that both have in common, negative where it is none.
+        durations_ns: (n, 2), how long the detection and the truth last.
+    """
+
+    detections: Indices
+    truths: Indices
+    alike: Mask
+    common_ns: NDArray[np.int64]
+    durations_ns: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, detections: Sequence[Detection], truths: Sequence[Truth]) -> "Pairs":
+        """Pair everything that was found with everything that its person did."""
+        done = sorted(truths, key=lambda truth: (truth.start_ns, truth.end_ns, truth.point_ns or 0))
+        owners, bounds_ns, labels = _columns(detections)
+        doers, done_ns, done_labels = _columns(done)
+        numbers: dict[tuple[str, int], list[int]] = {}
+        for number, doer in enumerate(doers):
+            numbers.setdefault(doer, []).append(number)
+        beside = [numbers.get(owner, []) for owner in owners]
+        rows = np.repeat(np.arange(len(beside)), [len(each) for each in beside])
+        columns = np.array([number for each in beside for number in each], np.intp)
+        one, other = bounds_ns[rows], done_ns[columns]
+        common_ns = np.minimum(one[:, 1], other[:, 1]) - np.maximum(one[:, 0], other[:, 0])
+        durations_ns = np.stack([one[:, 1] - one[:, 0], other[:, 1] - other[:, 0]], axis=1)
+        return cls(rows, columns, labels[rows] == done_labels[columns], common_ns, durations_ns)
+
+    def fits(self) -> Array:
+        """Return the overlap (IoU) of each match that `matched` makes by `intersection_over_union`, (matches,)."""
+        fitting = np.flatnonzero(self.alike & (self.common_ns > 0))
+        detections, truths, common_ns = self.detections[fitting], self.truths[fitting], self.common_ns[fitting]
+        overlaps = common_ns / (self.durations_ns[fitting].sum(axis=1) - common_ns)
+        best_first = np.lexsort((truths, -overlaps, detections))
+        claims = best_first[np.unique(detections[best_first], return_index=True)[1]]
+        best = np.zeros(truths.max(initial=-1) + 1)
+        np.maximum.at(best, truths[claims], overlaps[claims])
+        return best[best > 0]
+
+    def count(self, among: Mask) -> int:
+        """Count the detections in some of the pairs (n,)."""
+        return len(np.unique(self.detections[among]))
+
+
 @dataclass(frozen=True)
 class Found:
     """Everything that is scored: what was found in some recordings, what was done there, and who was seen when."""
@@ -78,6 +134,11 @@ class Found:
     detections: Sequence[Detection] = ()
     truths: Sequence[Truth] = ()
     seen: Sequence[Stretch] = ()
+
+    @cached_property
+    def pairs(self) -> Pairs:
+        """All pairs of what was found and what its person did."""
+        return Pairs.of(self.detections, self.truths)
 
     def __add__(self, other: "Found") -> "Found":
         return Found(
@@ -111,3 +172,12 @@ def point_fractions(truths: Iterable[Truth]) -> dict[str, float]:
             fraction = (truth.point_ns - truth.start_ns) / (truth.end_ns - truth.start_ns)
             fractions.setdefault(truth.label, []).append(fraction)
     return {label: median_high(of_label) for label, of_label in fractions.items()}
+
+
+def _columns(
+    intervals: Sequence[Detection | Truth],
+) -> tuple[list[tuple[str, int]], NDArray[np.int64], NDArray[np.object_]]:
+    """Return the file and agent, the bounds (n, 2; ns) and the label of each interval."""
+    bounds_ns = np.array([(each.start_ns, each.end_ns) for each in intervals], np.int64).reshape(-1, 2)
+    labels = np.array([each.label for each in intervals], object)
+    return [(each.file, each.agent) for each in intervals], bounds_ns, labels

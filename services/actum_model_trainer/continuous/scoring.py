@@ -1,14 +1,13 @@
 """Scores of what was found without marks: events, boundaries, action points, false detections, latency."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from statistics import median
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from actum.node import SECOND_NS
 from actum_model_trainer.continuous.detections import Detection, Found, Interval, Stretch, Truth
@@ -28,8 +27,6 @@ POINT_TOLERANCE_NS = 333_000_000
 FALSE_ALARMS_PER_MIN = 1.0
 """The rate of false detections at which recall is given: about what people bear."""
 MINUTE_NS = 60 * SECOND_NS
-Bounds = NDArray[np.int64]
-"""Starts and ends of intervals (ns), (n, 2)."""
 T = TypeVar("T", bound=Interval)
 
 
@@ -136,18 +133,13 @@ class ContinuousScores(EventScores):
         }
 
 
-def event_scores(found: Found) -> EventScores:
-    """Score which events were found."""
-    return _event_scores(found, matched(found.detections, found.truths, intersection_over_union))
-
-
-def _event_scores(found: Found, matches: Sequence[Match]) -> EventScores:
-    detections, truths = len(found.detections), len(found.truths)
-    minutes, false = background_min(found.seen, found.truths), detections - len(matches)
-    in_background = sum(int((common_ns(*each) <= 0).all(axis=1).sum()) for each in bounds_of_people(found))
+def event_scores(found: Found, minutes: float) -> EventScores:
+    """Score which events were found; `minutes` is the `background_min` of what was seen and done."""
+    detections, truths, fits = len(found.detections), len(found.truths), found.pairs.fits()
+    false, in_background = detections - len(fits), detections - found.pairs.count(found.pairs.common_ns > 0)
     return EventScores(
-        event=ActionScore(truths, detections, len(matches)),
-        f1_at_iou={iou: f1(sum(match.fit >= iou for match in matches), detections, truths) for iou in IOUS},
+        event=ActionScore(truths, detections, len(fits)),
+        f1_at_iou={iou: f1(int((fits >= iou).sum()), detections, truths) for iou in IOUS},
         false_detections=false,
         background_min=minutes,
         false_per_min=false / minutes if minutes else None,
@@ -155,30 +147,13 @@ def _event_scores(found: Found, matches: Sequence[Match]) -> EventScores:
     )
 
 
-def bounds_of_people(found: Found) -> Iterator[tuple[Bounds, Bounds]]:
-    """Yield, for each person in whose time something was found, the bounds of what was found and of what was done."""
-    done = _of_one_person(found.truths)
-    for person, detections in _of_one_person(found.detections).items():
-        yield _bounds(detections), _bounds(done[person])
-
-
-def _bounds(intervals: Iterable[Interval]) -> Bounds:
-    return np.array([(each.start_ns, each.end_ns) for each in intervals], np.int64).reshape(-1, 2)
-
-
-def common_ns(one: Bounds, other: Bounds) -> Bounds:
-    """Return the time that each of n intervals has in common with each of m, (n, m), negative where it is none."""
-    common: Bounds = np.minimum(one[:, None, 1], other[:, 1]) - np.maximum(one[:, None, 0], other[:, 0])
-    return common
-
-
 def scores_of(found: Found) -> ContinuousScores:
     """Score what was found."""
     matches = matched(found.detections, found.truths, intersection_over_union)
-    of_events = _event_scores(found, matches)
-    minutes, done, answered = of_events.background_min, _of_one_person(found.truths), _of_one_person(found.detections)
+    minutes = background_min(found.seen, found.truths)
+    done, answered = _of_one_person(found.truths), _of_one_person(found.detections)
     return ContinuousScores(
-        **vars(of_events),
+        **vars(event_scores(found, minutes)),
         point_f1=point_f1(found.detections, found.truths),
         latency_s=latency_s(matches),
         fragmentations=_holding_several(found.truths, answered),

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -145,14 +146,15 @@ def fit_heads(
         left_out: of the folds, which may hold no window or all of them; None leaves out none.
         shrinkage: relative penalty.
     """
-    form = DualForm.of(vectors, shrinkage)
+    form, rows = DualForm.of(vectors, shrinkage), [np.flatnonzero(folds != fold) for fold in left_out]
 
-    def without(fold: int | None) -> CompletenessHeads:
-        kept = np.flatnonzero(folds != fold)
+    def of_rows(kept: Indices) -> CompletenessHeads:
         intercept = completeness[kept].mean(axis=0) if len(kept) else np.zeros(completeness.shape[1])
         dual = np.zeros(completeness.shape)
-        inner = form.products if fold is None else form.products[np.ix_(kept, kept)]
+        inner = form.products if len(kept) == len(folds) else form.products[np.ix_(kept, kept)]
         dual[kept] = solution(inner, completeness[kept] - intercept)
         return CompletenessHeads(*form.fitted(dual, intercept))
 
-    return side_by_side(without, left_out)
+    longest_first = sorted(range(len(rows)), key=lambda number: -len(rows[number]))
+    fitted = side_by_side(of_rows, [rows[number] for number in longest_first])
+    return [heads for _, heads in sorted(zip(longest_first, fitted, strict=True), key=itemgetter(0))]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from actum.arrays import Mask
 from actum_model_trainer.continuous.detections import Detection, Found
-from actum_model_trainer.continuous.scoring import Bounds, EventScores, bounds_of_people, common_ns, event_scores
+from actum_model_trainer.continuous.scoring import EventScores, background_min, event_scores
 from actum_model_trainer.samples import LabelledStream
 from actum_model_trainer.spotting.scanning import ScannedStream
 from som_classifier.kinematics import GAP_NS
@@ -62,11 +62,15 @@ def chosen_threshold(
 ) -> ThresholdChoice:
     """Search the streams with each threshold, and choose the best after smoothing over neighbouring ones."""
     judged = [Judged.of(each, learned) for each in scanned]
-    by_threshold = (found(judged, learned, labels, threshold) for threshold in thresholds)
-    scores, precisions = zip(*((event_scores(own), precision(own, prior)) for own in by_threshold), strict=True)
+    marked = Found.of_all(each.stream.marked for each in judged)
+    minutes = background_min(marked.seen, marked.truths)
+    by_threshold = (replace(marked, detections=found(judged, learned, labels, each)) for each in thresholds)
+    scores, precisions = zip(
+        *((event_scores(own, minutes), precision(own, prior)) for own in by_threshold), strict=True
+    )
     worth = np.array([worth_of(score) for score in scores])
     smoothed = np.convolve(np.pad(worth, 1, mode="edge"), np.full(3, 1 / 3), mode="valid")
-    counted = scores[0].background_min >= SHORTEST_BACKGROUND_MIN
+    counted = minutes >= SHORTEST_BACKGROUND_MIN
     rates = [score.alarms_per_min or 0.0 for score in scores] if counted else []
     return ThresholdChoice(
         float(thresholds[int(smoothed.argmax())]),
@@ -82,14 +86,9 @@ def precision(of: Found, prior: Prior) -> float:
 
     What the action is called counts for nothing: how often that is right, the verifier knows.
     """
-    done = sum(_holding(*each) for each in bounds_of_people(of))
+    pairs = of.pairs
+    done = pairs.count(pairs.common_ns >= COMMON_SHARE * pairs.durations_ns.min(axis=1))
     return (done + prior.precision_segments * prior.precision) / (len(of.detections) + prior.precision_segments)
-
-
-def _holding(found_ns: Bounds, done_ns: Bounds) -> int:
-    """Count the segments found that have enough in common with one of the actions of their person."""
-    shorter_ns = np.minimum(np.diff(found_ns), np.diff(done_ns).T)
-    return int((common_ns(found_ns, done_ns) >= COMMON_SHARE * shorter_ns).any(axis=1).sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,14 +131,13 @@ class Judged:
         ]
 
 
-def found(judged: Sequence[Judged], learned: SpottingModel, labels: Sequence[str], threshold: float) -> Found:
+def found(judged: Sequence[Judged], learned: SpottingModel, labels: Sequence[str], threshold: float) -> list[Detection]:
     """Return what a search with this threshold finds in the streams."""
-    detections = [
+    return [
         Detection(each.stream.file, each.stream.agent, start_ns, end_ns, decided_ns, labels[action], 1.0)
         for each in judged
         for start_ns, end_ns, decided_ns, action in each.decided(learned.decoder(), threshold)
     ]
-    return replace(Found.of_all(each.stream.marked for each in judged), detections=detections)
 
 
 def false_alarms(
@@ -148,7 +146,7 @@ def false_alarms(
     """Return for each stream what a search with this threshold finds where no action is done."""
     alarms = []
     for each in scanned:
-        detections = found([Judged.of(each, learned)], learned, labels, threshold).detections
+        detections = found([Judged.of(each, learned)], learned, labels, threshold)
         segments = each.stream.segments
         alarms.append(
             [
