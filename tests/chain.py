@@ -76,10 +76,22 @@ def answers(streams: dict[str, list[Arrival]], actions_late_ns: int = 0) -> list
     return sorted(answered, key=lambda message: (message.segment_id, message.SCHEMA, without_seq([message])))
 
 
+def continuations(streams: dict[str, list[Arrival]]) -> list[Message]:
+    """Run the classifier: every continuation, by stamp."""
+    return _by_stamp(m for _, m in _classified(streams) if isinstance(m, Continuation))
+
+
 def foreseen(streams: dict[str, list[Arrival]], actions_late_ns: int = 0) -> list[Message]:
     """Run the chain: every intent and every continuation, by stamp; for these no service waits."""
-    put = replayed(SomClassifier(at_this_speed()), merged(streams.values()))
+    put = _classified(streams)
     actions = [(at_ns + actions_late_ns, m) for at_ns, m in put if isinstance(m, Action)]
     from_fusion = replayed(ActionFusion(Settings()), merged([*streams.values(), actions]))
-    said = [m for _, m in [*put, *from_fusion] if isinstance(m, Continuation | Intent)]
-    return sorted(said, key=lambda message: (message.stamp_ns, message.agent, message.SCHEMA))
+    return _by_stamp(m for _, m in [*put, *from_fusion] if isinstance(m, Continuation | Intent))
+
+
+def _classified(streams: dict[str, list[Arrival]]) -> list[Arrival]:
+    return replayed(SomClassifier(at_this_speed()), merged(streams.values()))
+
+
+def _by_stamp(messages: Iterable[Continuation | Intent]) -> list[Message]:
+    return sorted(messages, key=lambda message: (message.stamp_ns, message.agent, message.SCHEMA))

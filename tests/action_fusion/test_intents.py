@@ -1,6 +1,7 @@
 """What an intent says: nothing of what comes later, the same whatever came first, and calibrated from the start."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from action_fusion.intent.recent_paths import ARMS, OBJECTS_LATE_NS, RecentArms,
 from action_fusion.intent.usual_objects import Done
 from action_fusion.node import ActionFusion
 from action_fusion.settings import Settings
-from actum.messages import Action, Intended, Message, Objects
+from actum.messages import Action, Intended, Intent, Message, Objects
 from actum.node import SECOND_NS
 from fused import intents_of
 from scenes import FRAME_NS, REST_RIGHT, Scene, acting_on, action, moving, still
@@ -45,6 +46,11 @@ def day(gap_s: float = 30.0) -> list[Message]:
     ]
     shifted = [shift(message, number * gap_s) for number, act in enumerate(acts) for message in act]
     return sorted(shifted, key=lambda message: message.stamp_ns or 0)
+
+
+@cache
+def intents_of_day(gap_s: float) -> list[Intent]:
+    return intents_of(ActionFusion(Settings()), *day(gap_s))
 
 
 def shift(message: Message, seconds: float) -> Message:
@@ -103,10 +109,8 @@ def test_what_was_not_seen_for_ten_seconds_is_nowhere() -> None:
 @given(cut=st.integers(2, 400))
 @settings(max_examples=20, deadline=None)
 def test_an_intent_depends_on_nothing_later(cut: int) -> None:
-    messages = day()
-    whole = intents_of(ActionFusion(Settings()), *messages)
-    part = intents_of(ActionFusion(Settings()), *messages[:cut])
-    assert part == whole[: len(part)]
+    part = intents_of(ActionFusion(Settings()), *day(gap_s=30.0)[:cut])
+    assert part == intents_of_day(gap_s=30.0)[: len(part)]
 
 
 @given(objects_late_ns=st.integers(0, OBJECTS_LATE_NS - 1), action_late_ns=st.integers(0, ACTIONS_LATE_NS - 1))
@@ -115,9 +119,8 @@ def test_objects_and_actions_that_come_up_to_a_tenth_of_a_second_late_change_no_
     objects_late_ns: int, action_late_ns: int
 ) -> None:
     late_ns = {Objects: objects_late_ns, Action: action_late_ns}
-    captured = day(gap_s=2.2)
-    arriving = sorted(captured, key=lambda message: (message.stamp_ns or 0) + late_ns.get(type(message), 0))
-    said = intents_of(ActionFusion(Settings()), *captured)
+    arriving = sorted(day(gap_s=2.2), key=lambda message: (message.stamp_ns or 0) + late_ns.get(type(message), 0))
+    said = intents_of_day(gap_s=2.2)
     assert any(each.segment_id for each in said)
     assert intents_of(ActionFusion(Settings()), *arriving) == said
 

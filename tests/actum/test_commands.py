@@ -72,7 +72,8 @@ def test_the_list_of_commands_describes_each_by_the_first_line_and_schemas() -> 
 
 @given(
     st.dictionaries(
-        st.text(), st.recursive(st.none() | st.booleans() | st.integers(-(2**53), 2**53) | st.text(), st.lists)
+        st.text(),
+        st.recursive(st.none() | st.booleans() | st.integers(-(2**53), 2**53) | st.text(), st.lists, max_leaves=10),
     )
 )
 def test_fields_are_read_as_they_were_written_in_either_encoding(fields: dict[str, Any]) -> None:

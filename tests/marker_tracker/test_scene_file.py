@@ -72,7 +72,7 @@ BAD = {
     "a: !!int foo": "is not YAML",
     'a: !!int ""': "is not YAML",
     "a: 2026-13-45": "is not YAML",
-    "[" * 3000: "is not YAML",
+    "[\n" * 3000: "is not YAML",
     "objects: &all\n  1: *all\n": "contains a YAML alias (*name) that refers to itself",
     "a0: &a0 [x]\n"
     + "".join(f"a{n + 1}: &a{n + 1} [{f'*a{n}, ' * 9}]\n" for n in range(9)): "a0: there is no such field",

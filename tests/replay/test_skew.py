@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from actum.messages import Action, Agent, Continuation, Event, Image, Intent, Message, Segment, Skeleton, Truth
 from actum.node import SECOND_NS
-from chain import answers, by_key, delayed, foreseen
+from chain import answers, by_key, continuations, delayed, foreseen
 from marker_tracker.node import MarkerTracker
 from marker_tracker.settings import Settings
 from pose_preprocessor.node import PosePreprocessor
@@ -184,5 +184,5 @@ def test_the_usual_delays_change_nothing_that_is_foreseen(
 @given(delays_ns=st.lists(late, min_size=KEYS, max_size=KEYS))
 def test_no_delay_changes_a_continuation(streams, foreseen_on_time, delays_ns) -> None:
     late = {key: delayed(streams[key], [delay_ns]) for key, delay_ns in zip(streams, delays_ns, strict=True)}
-    said, on_time = ([m for m in each if isinstance(m, Continuation)] for each in (foreseen(late), foreseen_on_time))
-    assert without_seq(said) == without_seq(on_time)
+    on_time = [message for message in foreseen_on_time if isinstance(message, Continuation)]
+    assert without_seq(continuations(late)) == without_seq(on_time)

@@ -40,7 +40,7 @@ from ros2_bridge import topics
 from ros2_bridge.bridge import Ros2Bridge
 from ros2_bridge.hri.human_model import FOREARM_M, LINKS, NECK_M, TORSO_M, UPPER_ARM_M
 from ros2_bridge.hri_in.body_reader import LONGEST_NAME
-from ros2_bridge.hri_in.transform_tree import HISTORY, MOST_FRAMES
+from ros2_bridge.hri_in.transform_tree import MOST_FRAMES
 from ros2_bridge.settings import Settings
 
 FIRST_NS = 1_700_000_000 * SECOND_NS
@@ -473,7 +473,7 @@ def test_names_that_are_no_joints_of_the_model_are_not_kept() -> None:
     made = bridge()
     given_to(made, [tracked(FIRST_NS, *(f"b{i}" for i in range(MOST_AGENTS)))])
     names = {f"j{i}": 0.0 for i in range(4000)}
-    payloads = [joint_states(stamp_ns, "b0", names) for stamp_ns in stamps(HISTORY)]
+    payloads = [joint_states(stamp_ns, "b0", names) for stamp_ns in stamps(3)]
     gc.collect()
     tracemalloc.start()
     given_to(made, payloads)

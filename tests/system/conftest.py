@@ -4,14 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from actum.recording import Recording
 from actum.runtime import Client
-from actum_command.scene_marks import write_examples
-from actum_model_trainer.sample_reading import samples_from
-from actum_model_trainer.training import train
+from actum_command.simulated_model import SIMULATED_MODEL
 from deployments import Deployed, deployed
 from live import System, system
-from models import QUICK
 from third_session import Third
 
 
@@ -41,10 +37,5 @@ def third(deployment: Deployed) -> Iterator[Third]:
 
 
 @pytest.fixture(scope="session")
-def scene_model(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A model of the simulated scene."""
-    folder = tmp_path_factory.mktemp("scene-model")
-    write_examples(folder / "examples.mcap", repetitions=4, actor=0, seed=1)
-    model = train(samples_from([Recording(folder / "examples.mcap")]).usable, QUICK)
-    model.save(folder / "model.npz")
-    return folder / "model.npz"
+def scene_model() -> Path:
+    return SIMULATED_MODEL

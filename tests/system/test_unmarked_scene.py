@@ -1,6 +1,5 @@
-"""A trained model, live: the actions of the simulated scene are found without a mark, and as in its recording."""
+"""The shipped model, live: the actions of the simulated scene are found without a mark, and as in its recording."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -9,34 +8,24 @@ from actum import keys
 from actum.messages import AUTO, Action, Segment, Skeleton, Status
 from actum.recording import Recording
 from actum_command.scene_marks import write_examples
+from actum_command.simulated_model import SIMULATED_MODEL
 from actum_model_trainer.continuous.scoring import scores_of
 from actum_model_trainer.continuous.watching import found_by
-from actum_model_trainer.sample_reading import samples_from
-from actum_model_trainer.training import train_to_spot
 from live import PATIENCE_S, System, collect
-from models import QUICK
-from performers import TINY
+from som_classifier.model_loading import load_model
 
 pytestmark = pytest.mark.system
-PRESET = replace(
-    QUICK, spotting=replace(TINY.spotting, windows=6, shortest_quantile=0.04, most_windows=1000)
-)  # seconds to train
 BURST = 200
 """Frames put at once: fewer than a ring holds, so that none is lost however slow the services are."""
 
 
 def test_a_new_person_who_acts_without_marks_is_answered_as_in_the_recording(running: System, tmp_path: Path) -> None:
-    for actor in (0, 1):
-        write_examples(tmp_path / f"{actor}.mcap", repetitions=4, actor=actor, seed=actor + 1)
-    samples = samples_from([Recording(tmp_path / f"{actor}.mcap") for actor in (0, 1)])
-    model = train_to_spot(samples.usable, samples.streams, PRESET)
-    model.save(tmp_path / "model.npz")
     write_examples(tmp_path / "new.mcap", repetitions=1, actor=5, seed=9)
     recording = Recording(tmp_path / "new.mcap")
-    offline = found_by(model, [recording])
+    offline = found_by(load_model(SIMULATED_MODEL), [recording])
     expected = [(each.agent, each.start_ns, each.end_ns, each.label, each.confidence) for each in offline.detections]
 
-    actions, marks = live(running, tmp_path / "model.npz", [*recording.messages((keys.SKELETON,))], len(expected))
+    actions, marks = live(running, SIMULATED_MODEL, [*recording.messages((keys.SKELETON,))], len(expected))
 
     assert [(m.agent, m.start_ns, m.end_ns, m.action, m.confidence) for m in actions] == expected
     assert [m.stamp_ns for m in marks] == [ns for _, start_ns, end_ns, *_ in expected for ns in (start_ns, end_ns)]
