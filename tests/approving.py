@@ -1,0 +1,109 @@
+"""Comparison of what a package gives for a broad input with values that somebody approved.
+
+Long results are summed up: of each series of numbers its length, mean, root mean square, and a sum with weights that
+change from number to number, so that the order counts too. `pytest tests/approvals --approve` writes the files anew.
+"""
+
+import json
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel
+
+FOLDER = Path(__file__).parent / "approvals"
+MOST_TEXTS = 12
+"""Different texts of a series that are counted one by one."""
+MOST_SHOWN = 12
+"""Differences that a failure prints."""
+SMALLEST = 1e-9
+"""Numbers below are 0: processors round them differently."""
+Leaves = dict[str, Any]
+Approve = Callable[..., None]
+
+
+def leaves(value: object, path: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the numbers and texts of a value with their paths; elements of a list share their list's path."""
+    match value:
+        case BaseModel():
+            for name in type(value).model_fields:
+                yield from leaves(getattr(value, name), f"{path}.{name}")
+        case Mapping():
+            for name, each in value.items():
+                yield from leaves(each, f"{path}.{name}")
+        case np.ndarray():
+            yield path, value
+        case bytes():
+            yield path, len(value)
+        case _ if is_dataclass(value):
+            for field in fields(value):
+                yield from leaves(getattr(value, field.name), f"{path}.{field.name}")
+        case str() | None | bool() | int() | float() | np.generic():
+            yield path, value
+        case [float(), *_] if all(isinstance(each, float) for each in value):
+            yield path, np.array(value)
+        case Iterable():
+            for each in value:
+                yield from leaves(each, path)
+        case object(__slots__=names):
+            for name in names:
+                yield from leaves(getattr(value, name), f"{path}.{name}")
+        case _:
+            yield path, type(value).__name__
+
+
+def summary(value: object) -> Leaves:
+    """Sum up each series of a value, by its path."""
+    numbers: dict[str, list[Any]] = {}
+    texts: dict[str, Counter[str]] = {}
+    for path, leaf in leaves(value):
+        if leaf is None or isinstance(leaf, str | bool | np.bool_):
+            texts.setdefault(path, Counter())[str(leaf)] += 1
+        else:
+            numbers.setdefault(path, []).append(np.ravel(leaf).astype(float))
+    summed: Leaves = {path.lstrip("."): _moments(np.concatenate(parts)) for path, parts in numbers.items()}
+    for path, counts in texts.items():
+        few = len(counts) <= MOST_TEXTS
+        summed[f"{path} texts".strip(" .")] = dict(sorted(counts.items())) if few else {"different": len(counts)}
+    return dict(sorted(summed.items()))
+
+
+def _moments(series: np.ndarray) -> list[float]:
+    finite = np.nan_to_num(series, posinf=0.0, neginf=0.0)
+    weighted = float(finite @ np.cos(np.arange(len(finite)))) / max(len(finite), 1)
+    known = int(np.isfinite(series).sum())
+    return [len(series), known, *(_short(each) for each in (finite.mean(), np.sqrt(np.square(finite).mean()), weighted))]
+
+
+def _short(number: float) -> float:
+    return float(f"{number:.9g}") if abs(number) > SMALLEST else 0.0
+
+
+def differences(found: Leaves, approved: Leaves, tolerance: float) -> list[str]:
+    """Describe each series that is not as approved; numbers may differ by a share of their root mean square."""
+    return [
+        f"{path}: {json.dumps(found.get(path))}, approved was {json.dumps(approved.get(path))}"
+        for path in sorted({*found, *approved})
+        if not _alike(found.get(path), approved.get(path), tolerance)
+    ]
+
+
+def _alike(one: Any, other: Any, tolerance: float) -> bool:
+    if not (isinstance(one, list) and isinstance(other, list)):
+        return bool(one == other)
+    return one[:2] == other[:2] and np.allclose(one[2:], other[2:], rtol=0, atol=tolerance * other[3] + SMALLEST)
+
+
+def check(name: str, value: object, tolerance: float, renew: bool) -> None:
+    """Compare with the file of that name, or write it."""
+    file, found = FOLDER / f"{name}.json", summary(value)
+    if renew:
+        lines = (f"  {json.dumps(path)}: {json.dumps(each)}" for path, each in found.items())
+        file.write_text("{\n" + ",\n".join(lines) + "\n}\n")
+    wrong = differences(found, json.loads(file.read_text()), tolerance)
+    more = [f"and {len(wrong) - MOST_SHOWN} more"] if len(wrong) > MOST_SHOWN else []
+    told = "\n".join(["(length, known, mean, root mean square, weighted mean)", *wrong[:MOST_SHOWN], *more])
+    assert not wrong, f"{file.name} approved other values: `pytest tests/approvals --approve` approves these.\n{told}"
