@@ -1,0 +1,116 @@
+"""What the calibrator finds for boards seen by known cameras, and what it draws and prints."""
+
+import datetime
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pypdfium2
+import pytest
+from PIL import ImageDraw
+
+from actum_calibrator.blur import image_blur_px
+from actum_calibrator.board import Board
+from actum_calibrator.board_sheet import board_sheet
+from actum_calibrator.board_views import BoardFinder, View
+from actum_calibrator.coverage_picture import coverage_picture
+from actum_calibrator.extrinsics import estimate_extrinsics, with_extrinsics
+from actum_calibrator.intrinsics import calibration_of, estimate_intrinsics
+from actum_calibrator.marker_sheet import marker_sheet
+from actum_calibrator.pairs import Pair
+from actum_calibrator.sheet_sizes import SheetSize
+from actum_calibrator.up_direction import UpDirectionEstimator
+from actum_calibrator.view_collector import PairCollector, ViewCollector
+from actum_calibrator.view_set import nominal_tilts_deg, shortcomings
+from approving import Approve
+from boards import Lens, facing, good_poses, photograph
+from people import FRAME_NS, STANDING, skeleton
+from calls import calls_of
+
+BOARD = Board()
+MARKERS_LENS = Lens()
+PEOPLE_LENS = Lens(matrix=(530.0, 532.0, 314.0, 245.0), distortion=(0.06, -0.1, 0.0, 0.0, 0.0))
+DAY = datetime.date(2026, 1, 2)
+
+
+def view(lens: Lens, pose: np.ndarray, name: str, seed: int, bend_m: float = 0.0) -> View:
+    """Project the corners of a board that is bent a little; a quarter of them is covered."""
+    rng = np.random.default_rng(seed)
+    corners_m = BOARD.corners_m.copy()
+    corners_m[:, 2] += bend_m * ((corners_m[:, 0] - corners_m[:, 0].mean()) / BOARD.width_m) ** 2
+    rotation, _ = cv2.Rodrigues(pose[:3, :3])
+    projected, _ = cv2.projectPoints(corners_m, rotation, pose[:3, 3], lens.intrinsics, np.array(lens.distortion))
+    ids = sorted(rng.choice(len(corners_m), 3 * len(corners_m) // 4, replace=False).tolist())
+    corners_px = projected.reshape(-1, 2)[ids] + rng.normal(0, 0.08, (len(ids), 2))
+    return View(name, lens.size, BOARD, ids, corners_px, 0.7)
+
+
+POSES = good_poses(BOARD)
+VIEWS = [view(MARKERS_LENS, pose, f"view {n}", n, 0.002) for n, pose in enumerate(POSES)]
+
+
+def test_intrinsics_and_their_picture(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = estimate_intrinsics(VIEWS)
+    calls = calls_of(monkeypatch, ImageDraw.ImageDraw, "line", "rectangle", "ellipse", "text")
+    png = coverage_picture(found, VIEWS)
+    shape = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR).shape
+    about = [calibration_of(found, DAY), found.coverage, found.rms_of_views_px, shortcomings(VIEWS[:4])]
+    approve("intrinsics", {"found": found, "about": about, "tilts": nominal_tilts_deg(VIEWS)}, 1e-4)
+    approve("coverage-picture", {"calls": calls, "shape": shape}, 1e-3)
+
+
+def test_extrinsics(approve: Approve) -> None:
+    people_from_markers = facing(BOARD, (0.25, 0.02, 0.05), (3, -18, 4))
+    pairs = [
+        Pair(f"{n}", view(MARKERS_LENS, pose, f"{n}_a", n), view(PEOPLE_LENS, people_from_markers @ pose, f"{n}_b", 50 + n))
+        for n, pose in enumerate(POSES[:5])
+    ]
+    markers = calibration_of(estimate_intrinsics(VIEWS), DAY)
+    own = markers.model_copy(update={"K": MARKERS_LENS.intrinsics.ravel().tolist(), "distortion": list(MARKERS_LENS.distortion)})
+    people = own.model_copy(update={"K": PEOPLE_LENS.intrinsics.ravel().tolist(), "distortion": list(PEOPLE_LENS.distortion)})
+    found = estimate_extrinsics(pairs, own, people)
+    approve("extrinsics", [found, with_extrinsics(own, found, DAY)], 1e-3)
+
+
+def test_views_of_a_live_camera_and_their_instructions(approve: Approve) -> None:
+    collector, pairs, said = ViewCollector(), PairCollector(), []
+    for n, each in enumerate(VIEWS * 2):
+        moved = replace(each, corners_px=each.corners_px + 0.4 * (n % 7))
+        for offered in (each, moved, None if n % 5 == 0 else moved):
+            kept = collector.offer(offered), pairs.offer(0, offered), pairs.offer(1, moved)
+            said.append([*kept, collector.complete, pairs.complete, collector.instruction])
+    approve("live-views", said, 1e-6)
+
+
+def test_photographed_boards_and_their_blur(approve: Approve) -> None:
+    pixels = [photograph(MARKERS_LENS, BOARD, POSES[n], blur, seed=n) for n, blur in ((0, 0.7), (3, 1.1))]
+    found = [BoardFinder(BOARD).find(each, "photograph") for each in pixels]
+    approve("board-views", {"views": found, "blur": [image_blur_px(each) for each in pixels]}, 1e-3)
+
+
+def test_the_up_direction(approve: Approve) -> None:
+    estimator, rng, said = UpDirectionEstimator(), np.random.default_rng(0), []
+    for k in range(90):
+        leaning = STANDING @ np.array([[1, 0.1, 0], [-0.1, 1, 0.05], [0, -0.05, 1]]) + rng.normal(0, 0.004, (15, 3))
+        estimator.offer(skeleton(k * FRAME_NS, leaning, *([STANDING] if k == 4 else [])))
+        up = estimator.up
+        said.append([estimator.instruction, *([up, up.pitch_deg, up.roll_deg] if up else [])])
+    approve("up-direction", said, 1e-6)
+
+
+def test_printed_sheets(approve: Approve) -> None:
+    sheets = {
+        "board": board_sheet(BOARD, SheetSize.A4),
+        "markers": marker_sheet("DICT_4X4_50", range(9), 60.0, SheetSize.LETTER),
+        "small": marker_sheet("DICT_APRILTAG_36h11", [0, 17], 22.0, SheetSize.A4),
+    }
+    approve("sheets", {name: objects(pdf) for name, pdf in sheets.items()}, 1e-5)
+
+
+def objects(pdf: bytes) -> list[object]:
+    """Return the bounds of all that stands on the pages (points), by type, and the texts."""
+    with pypdfium2.PdfDocument(pdf) as document:
+        return [
+            {"texts": page.get_textpage().get_text_range(), "bounds": {str(each.type): np.array([o.get_bounds() for o in page.get_objects() if o.type == each.type]) for each in page.get_objects()}}
+            for page in document
+        ]
