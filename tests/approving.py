@@ -28,31 +28,34 @@ Approve = Callable[..., None]
 def leaves(value: object, path: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the numbers and texts of a value with their paths; elements of a list share their list's path."""
     match value:
-        case BaseModel():
-            for name in type(value).model_fields:
-                yield from leaves(getattr(value, name), f"{path}.{name}")
-        case Mapping():
-            for name, each in value.items():
-                yield from leaves(each, f"{path}.{name}")
-        case np.ndarray():
+        case np.ndarray() | np.generic() | str() | None | bool() | int() | float():
             yield path, value
-        case bytes():
-            yield path, len(value)
-        case _ if is_dataclass(value):
-            for field in fields(value):
-                yield from leaves(getattr(value, field.name), f"{path}.{field.name}")
-        case str() | None | bool() | int() | float() | np.generic():
-            yield path, value
+        case bytes():  # compressed pictures, whose length depends on the library
+            yield path, bool(value)
         case [float(), *_] if all(isinstance(each, float) for each in value):
             yield path, np.array(value)
+        case _ if (named := fields_of(value)) is not None:
+            for name, each in named.items():
+                yield from leaves(each, f"{path}.{name}")
         case Iterable():
             for each in value:
                 yield from leaves(each, path)
-        case object(__slots__=names):
-            for name in names:
-                yield from leaves(getattr(value, name), f"{path}.{name}")
         case _:
             yield path, type(value).__name__
+
+
+def fields_of(value: object) -> Mapping[str, object] | None:
+    """Return the fields of a message, a mapping, or an object that names its fields; None for all else."""
+    match value:
+        case Mapping():
+            return value
+        case BaseModel():
+            return {name: getattr(value, name) for name in type(value).model_fields}
+        case _ if is_dataclass(value):
+            return {field.name: getattr(value, field.name) for field in fields(value)}
+        case object(__slots__=names):
+            return {name: getattr(value, name) for name in names}
+    return None
 
 
 def summary(value: object) -> Leaves:
@@ -67,7 +70,8 @@ def summary(value: object) -> Leaves:
     summed: Leaves = {path.lstrip("."): _moments(np.concatenate(parts)) for path, parts in numbers.items()}
     for path, counts in texts.items():
         few = len(counts) <= MOST_TEXTS
-        summed[f"{path} texts".strip(" .")] = dict(sorted(counts.items())) if few else {"different": len(counts)}
+        shown = next(iter(counts)) if counts.total() == 1 else dict(sorted(counts.items()))
+        summed[f"{path} texts".strip(" .")] = shown if few else {"different": len(counts)}
     return dict(sorted(summed.items()))
 
 
@@ -75,7 +79,11 @@ def _moments(series: np.ndarray) -> list[float]:
     finite = np.nan_to_num(series, posinf=0.0, neginf=0.0)
     weighted = float(finite @ np.cos(np.arange(len(finite)))) / max(len(finite), 1)
     known = int(np.isfinite(series).sum())
-    return [len(series), known, *(_short(each) for each in (finite.mean(), np.sqrt(np.square(finite).mean()), weighted))]
+    return [
+        len(series),
+        known,
+        *(_short(each) for each in (finite.mean(), np.sqrt(np.square(finite).mean()), weighted)),
+    ]
 
 
 def _short(number: float) -> float:
@@ -97,13 +105,13 @@ def _alike(one: Any, other: Any, tolerance: float) -> bool:
     return one[:2] == other[:2] and np.allclose(one[2:], other[2:], rtol=0, atol=tolerance * other[3] + SMALLEST)
 
 
-def check(name: str, value: object, tolerance: float, renew: bool) -> None:
+def check(name: str, value: object, tolerance: float = 1e-6, *, renew: bool) -> None:
     """Compare with the file of that name, or write it."""
     file, found = FOLDER / f"{name}.json", summary(value)
     if renew:
-        lines = (f"  {json.dumps(path)}: {json.dumps(each)}" for path, each in found.items())
-        file.write_text("{\n" + ",\n".join(lines) + "\n}\n")
-    wrong = differences(found, json.loads(file.read_text()), tolerance)
+        lines = (f"  {json.dumps(path)}: {json.dumps(each, ensure_ascii=False)}" for path, each in found.items())
+        file.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
+    wrong = differences(found, json.loads(file.read_text(encoding="utf-8")), tolerance)
     more = [f"and {len(wrong) - MOST_SHOWN} more"] if len(wrong) > MOST_SHOWN else []
     told = "\n".join(["(length, known, mean, root mean square, weighted mean)", *wrong[:MOST_SHOWN], *more])
     assert not wrong, f"{file.name} approved other values: `pytest tests/approvals --approve` approves these.\n{told}"

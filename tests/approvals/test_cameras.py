@@ -11,13 +11,13 @@ from actum.messages import Agent
 from actum.node import SECOND_NS, Counters
 from actum_command.skeleton_overlay import drawn, sheet
 from approving import Approve
+from calls import calls_of
 from rendered_bodies import Person, depth_of, landmarks_of, person
 from sensor_gateway.captured_picture import DepthPicture, Picture
 from sensor_gateway.lens import Lens
 from sensor_gateway.optics import DepthOptics, Optics
 from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.perceiver import Perceiver
-from calls import calls_of
 
 WIDTH, HEIGHT = 320, 240
 LENS = Lens.of_field_of_view(WIDTH, HEIGHT, 60.0)

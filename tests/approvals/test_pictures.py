@@ -1,7 +1,7 @@
 """What stands in pictures: lines, colours and texts of the SVG files, and the calls that draw pixels."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -12,15 +12,17 @@ from actum.recording import Recording
 from actum_command.recording_picture import write_picture
 from actum_examples.take import read_take
 from actum_model_inspector.answered import answered_segments
-from actum_model_inspector.inspection import Picture, pictures, write
+from actum_model_inspector.inspection import pictures, write
 from actum_model_trainer.evaluation import evaluate
 from approving import Approve
-from performers import HAND_PATHS, TINY_PAPER, performance
+from performers import HAND_PATHS, performance
 from recognisers import tiny_model
 from unmarked import recorded, scene, spotting_model
 
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e-?\d+)?")
 DRAWN = ("path", "text", "use", "svg", "image")
+ALIKE = ("trace-lift", "time-lift", "trace-swing", "time-swing", "trace-mistake-1")
+"""Pictures that show nothing which others do not show."""
 NAMES = ("id", "href", "clip-path", "version")
 """Attributes that only name other elements, or the format."""
 
@@ -63,19 +65,11 @@ def performed(tmp_path: Path) -> Recording:
 def test_the_pictures_of_a_model(performed: Recording, tmp_path: Path, approve: Approve) -> None:
     model = tiny_model()
     segments = answered_segments(model, [performed])
-    planned = pictures(model, segments, evaluate(model, [performed]))
-    approve("pictures", all_drawn([each for each in planned if "swing" not in each.name], tmp_path), 1e-3)
-
-
-def test_the_pictures_of_a_model_of_the_paper(performed: Recording, tmp_path: Path, approve: Approve) -> None:
-    model = tiny_model(TINY_PAPER)
-    segments = answered_segments(model, [performed])[:1]
-    approve("pictures-paper", all_drawn(list(pictures(model, segments, None)), tmp_path), 1e-3)
-
-
-def all_drawn(planned: Sequence[Picture], folder: Path) -> dict[str, object]:
-    (folder / "pictures").mkdir()
-    return {name: drawn(folder / "pictures" / file) for name, file in write(planned, folder / "pictures", "svg").items()}
+    planned = [each for each in pictures(model, segments, evaluate(model, [performed])) if each.name not in ALIKE]
+    folder = tmp_path / "pictures"
+    folder.mkdir()
+    files = write(planned, folder, "svg")
+    approve("pictures", {name: drawn(folder / file) for name, file in files.items()}, 1e-3)
 
 
 def test_the_picture_of_a_recording(tmp_path: Path, approve: Approve) -> None:

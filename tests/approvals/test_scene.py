@@ -3,11 +3,13 @@
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+import cv2
+import numpy as np
 import pytest
 from benchmarks.rig.chain import Chain
 
 from actum.bridge import Foreign
-from actum.messages import Message, Skeleton, Truth
+from actum.messages import Image, Message, Skeleton, Truth
 from actum.node import TICK_NS, Tick
 from actum_command.scene_marks import mark_of
 from actum_command.simulated_model import SIMULATED_MODEL
@@ -57,12 +59,19 @@ def test_the_services_put_what_they_put_for_this_scene(put: list[Message], appro
     approve("services", of_each_type(put), 1e-4)
 
 
+def test_the_pictures_of_the_scene(put: list[Message], approve: Approve) -> None:
+    """The mean grey of each of 16 x 12 fields of each picture."""
+    images = [np.frombuffer(message.data, np.uint8) for message in put if isinstance(message, Image)][::10]
+    pictures = [cv2.imdecode(each, cv2.IMREAD_GRAYSCALE) for each in images]
+    approve("scene-pictures", [cv2.resize(each, (16, 12), interpolation=cv2.INTER_AREA) for each in pictures], 2e-3)
+
+
 def test_ros_gets_what_it_got_and_gives_the_bodies_back(put: list[Message], tmp_path: Path, approve: Approve) -> None:
     humans = pytest.importorskip("humans", reason="the bridge to ROS 2 is written with rosbags")
     (tmp_path / "mapping.yaml").write_text(MAPPING)
     room = humans.Room(ros_topics=TO_ROS, ros_hri_mapping=tmp_path / "mapping.yaml")
     for i, message in enumerate(put):
-        if not isinstance(message, Skeleton) or i % 3 == 0:
+        if not isinstance(message, Skeleton) or i % 12 == 0:
             room.handle(message)
     room.wait(3)
     approve("ros2", {"said": room.said, "withdrawn": room.withdrawn, "topics": sorted(room.declared)}, 1e-4)
