@@ -53,6 +53,8 @@ def fields_of(value: object) -> Mapping[str, object] | None:
             return {name: getattr(value, name) for name in type(value).model_fields}
         case _ if is_dataclass(value):
             return {field.name: getattr(value, field.name) for field in fields(value)}
+        case tuple(_asdict=as_dict):
+            return as_dict()
         case object(__slots__=names):
             return {name: getattr(value, name) for name in names}
     return None
