@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,7 @@ MOST_SHOWN = 12
 """Differences that a failure prints."""
 SMALLEST = 1e-9
 """Numbers below are 0: processors round them differently."""
+NO_FIELDS: Mapping[str, float] = MappingProxyType({})
 Leaves = dict[str, Any]
 Approve = Callable[..., None]
 
@@ -92,28 +94,29 @@ def _short(number: float) -> float:
     return float(f"{number:.9g}") if abs(number) > SMALLEST else 0.0
 
 
-def differences(found: Leaves, approved: Leaves, tolerance: float) -> list[str]:
-    """Describe each series that is not as approved; numbers may differ by a share of their root mean square."""
-    return [
+def check(
+    name: str, value: object, tolerance: float = 1e-6, besides: Mapping[str, float] = NO_FIELDS, *, renew: bool
+) -> None:
+    """Compare with the file of that name, or write it.
+
+    Numbers may differ by a share of their series' root mean square: `besides` gives that of fields with another.
+    """
+    file, found = FOLDER / f"{name}.json", summary(value)
+    if renew:
+        lines = (f"  {json.dumps(path)}: {json.dumps(each, ensure_ascii=False)}" for path, each in found.items())
+        file.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
+    approved = json.loads(file.read_text(encoding="utf-8"))
+    wrong = [
         f"{path}: {json.dumps(found.get(path))}, approved was {json.dumps(approved.get(path))}"
         for path in sorted({*found, *approved})
-        if not _alike(found.get(path), approved.get(path), tolerance)
+        if not _alike(found.get(path), approved.get(path), besides.get(path.rpartition(".")[2], tolerance))
     ]
+    more = [f"and {len(wrong) - MOST_SHOWN} more"] if len(wrong) > MOST_SHOWN else []
+    told = "\n".join(["(length, known, mean, root mean square, weighted mean)", *wrong[:MOST_SHOWN], *more])
+    assert not wrong, f"{file.name} approved other values: `pytest tests/approvals --approve` approves these.\n{told}"
 
 
 def _alike(one: Any, other: Any, tolerance: float) -> bool:
     if not (isinstance(one, list) and isinstance(other, list)):
         return bool(one == other)
     return one[:2] == other[:2] and np.allclose(one[2:], other[2:], rtol=0, atol=tolerance * other[3] + SMALLEST)
-
-
-def check(name: str, value: object, tolerance: float = 1e-6, *, renew: bool) -> None:
-    """Compare with the file of that name, or write it."""
-    file, found = FOLDER / f"{name}.json", summary(value)
-    if renew:
-        lines = (f"  {json.dumps(path)}: {json.dumps(each, ensure_ascii=False)}" for path, each in found.items())
-        file.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
-    wrong = differences(found, json.loads(file.read_text(encoding="utf-8")), tolerance)
-    more = [f"and {len(wrong) - MOST_SHOWN} more"] if len(wrong) > MOST_SHOWN else []
-    told = "\n".join(["(length, known, mean, root mean square, weighted mean)", *wrong[:MOST_SHOWN], *more])
-    assert not wrong, f"{file.name} approved other values: `pytest tests/approvals --approve` approves these.\n{told}"

@@ -52,7 +52,7 @@ def learnt(model: Model) -> dict[str, Any]:
 
 
 def without_digests(metadata: dict[str, Any]) -> dict[str, Any]:
-    kept = {name: each for name, each in metadata.items() if not name.endswith(("digest", "version"))}
+    kept = {name: each for name, each in metadata.items() if not name.endswith(("digest", "version", "updated_from"))}
     return {name: without_digests(each) if isinstance(each, dict) else each for name, each in kept.items()}
 
 
@@ -84,7 +84,7 @@ def test_a_model_of_the_paper_s_kind(approve: Approve) -> None:
 def test_a_model_to_which_examples_are_added(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PRESETS, TINY.name, TINY)
     waves = [replace(each, label="wave", person="4") for each in taught().usable if each.label == "push"][:5]
-    approve("model-added", learnt(add_to(spotting_model(), spotting_model().kept, waves, taught().streams)), 2e-3)
+    approve("model-added", learnt(add_to(spotting_model(), spotting_model().kept, waves, taught().streams)), 1e-2)
 
 
 def test_how_a_model_is_scored(other: Recording, approve: Approve) -> None:
