@@ -45,7 +45,7 @@ POSES = good_poses(BOARD)
 VIEWS = [view(MARKERS_LENS, pose, f"view {n}", n, 0.002) for n, pose in enumerate(POSES)]
 
 
-def test_intrinsics_and_their_picture(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_intrinsics_are_found_and_drawn_as_approved(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:
     found = estimate_intrinsics(VIEWS)
     calls = calls_of(monkeypatch, ImageDraw.ImageDraw, "line", "rectangle", "ellipse", "text")
     png = coverage_picture(found, VIEWS)
@@ -55,7 +55,7 @@ def test_intrinsics_and_their_picture(approve: Approve, monkeypatch: pytest.Monk
     approve("coverage-picture", {"calls": calls, "shape": shape}, 1e-3)
 
 
-def test_extrinsics(approve: Approve) -> None:
+def test_extrinsics_are_found_as_approved(approve: Approve) -> None:
     people_from_markers = facing(BOARD, (0.25, 0.02, 0.05), (3, -18, 4))
     seen = [view(PEOPLE_LENS, people_from_markers @ pose, "people", n) for n, pose in enumerate(POSES[1:6])]
     pairs = [Pair(own.name, own, other) for own, other in zip(VIEWS[1:6], seen, strict=True)]
@@ -68,7 +68,7 @@ def calibration(lens: Lens) -> Calibration:
     return Calibration(image_size=lens.size, K=lens.intrinsics.ravel().tolist(), distortion=list(lens.distortion))
 
 
-def test_printed_sheets(approve: Approve) -> None:
+def test_sheets_are_printed_as_approved(approve: Approve) -> None:
     sheets = {
         "board": board_sheet(BOARD, SheetSize.A4),
         "markers": marker_sheet("DICT_4X4_50", range(9), 60.0, SheetSize.LETTER),

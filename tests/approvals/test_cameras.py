@@ -52,7 +52,7 @@ def seen(people: list[Person], i: int) -> list[Landmarks]:
     ]
 
 
-def test_people_before_a_colour_camera(approve: Approve) -> None:
+def test_people_before_a_colour_camera_are_placed_as_approved(approve: Approve) -> None:
     found = [seen(people, i) for i, people in enumerate(passing())]
     blank = np.zeros((HEIGHT, WIDTH, 3), np.uint8)
     given = {}
@@ -62,7 +62,7 @@ def test_people_before_a_colour_camera(approve: Approve) -> None:
     approve("colour-camera", given, 1e-6)
 
 
-def test_people_before_a_depth_camera(approve: Approve) -> None:
+def test_people_before_a_depth_camera_are_placed_as_approved(approve: Approve) -> None:
     people = list(passing())[::4]
     found = [seen(each, i)[:1] for i, each in enumerate(people)]
     perceiver = Perceiver(Scripted(found), DepthOptics(), "kinect0", "session", Counters())
@@ -84,7 +84,7 @@ def measured(bodies: list[Person], seed: int) -> NDArray[np.float32]:
     return depth
 
 
-def test_joints_in_a_picture(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_joints_are_drawn_into_a_picture_as_approved(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:
     calls = calls_of(monkeypatch, cv2, "line", "circle", "putText")
     bodies = [person((0.3, 0.0, 2.5)), person((-0.4, 0.1, 3.0), turn_deg=30)]
     agents = [

@@ -28,7 +28,7 @@ def cuts_of(skeletons: Iterable[Skeleton], asked: int | None) -> Cuts | None:
 
 
 @pytest.mark.parametrize("name", STREAMS)
-def test_repetitions_that_are_cut(name: str, approve: Approve) -> None:
+def test_repetitions_are_cut_as_approved(name: str, approve: Approve) -> None:
     skeletons = STREAMS[name].skeletons()
     found = {str(asked): cuts_of(skeletons, asked) for asked in (None, 3, 5)}
     lines = {asked: {f"{i:02}": line for i, line in enumerate(lines_of(cuts))} for asked, cuts in found.items()}

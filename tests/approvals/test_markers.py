@@ -38,7 +38,7 @@ def square(rng: np.random.Generator, half_px: float) -> NDArray[np.float64]:
     return half_px * np.stack([np.cos(angle), np.sin(angle)], axis=1) * rng.uniform(0.9, 1.1, (4, 1)) * 1.2
 
 
-def test_markers_that_are_hard_to_see(approve: Approve) -> None:
+def test_markers_that_are_hard_to_see_are_found_as_approved(approve: Approve) -> None:
     found = {}
     for seed, (name, (blur_px, shrunk)) in enumerate(
         (name, way) for name in FAMILIES for way in ((0.6, 1.0), (0.8, 0.5), (1.3, 0.7))
@@ -48,7 +48,7 @@ def test_markers_that_are_hard_to_see(approve: Approve) -> None:
     approve("markers", found, 1e-4, besides={"covered": 3e-2})
 
 
-def test_markers_that_move(approve: Approve) -> None:
+def test_markers_that_move_are_followed_as_approved(approve: Approve) -> None:
     still, detector = picture("DICT_4X4_50", 7, 0.7, 0.8), MarkerDetector({"DICT_4X4_50": range(12)})
     found = {}
     for frame in range(8):

@@ -62,7 +62,7 @@ def performed(tmp_path: Path) -> Recording:
     return recorded(tmp_path, "performance", [*skeletons, *marks], "2")
 
 
-def test_the_pictures_of_a_model(performed: Recording, tmp_path: Path, approve: Approve) -> None:
+def test_a_model_is_drawn_as_approved(performed: Recording, tmp_path: Path, approve: Approve) -> None:
     model = tiny_model()
     segments = answered_segments(model, [performed])
     planned = [each for each in pictures(model, segments, evaluate(model, [performed])) if each.name not in ALIKE]
@@ -72,7 +72,7 @@ def test_the_pictures_of_a_model(performed: Recording, tmp_path: Path, approve: 
     approve("pictures", {name: drawn(folder / file) for name, file in files.items()}, 1e-3)
 
 
-def test_the_picture_of_a_recording(tmp_path: Path, approve: Approve) -> None:
+def test_a_recording_is_drawn_as_approved(tmp_path: Path, approve: Approve) -> None:
     of = scene(("lift", "push", "swing"), seed=9)
     recording = recorded(tmp_path, "scene", [*of.skeletons(), *of.marks()], "2")
     write_picture(read_take(recording), spotting_model(), tmp_path / "scene.svg")

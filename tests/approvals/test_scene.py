@@ -55,19 +55,19 @@ def of_each_type(messages: Iterable[object]) -> dict[str, list[object]]:
     return sorted_
 
 
-def test_the_services_put_what_they_put_for_this_scene(put: list[Message], approve: Approve) -> None:
+def test_the_services_put_what_is_approved(put: list[Message], approve: Approve) -> None:
     """With the shipped model; after `make simulated-model` other answers are approved."""
     approve("services", of_each_type(put), 1e-4)
 
 
-def test_the_pictures_of_the_scene(put: list[Message], approve: Approve) -> None:
+def test_the_scene_looks_as_approved(put: list[Message], approve: Approve) -> None:
     """The mean grey of each of 16 x 12 fields of each picture."""
     images = [np.frombuffer(message.data, np.uint8) for message in put if isinstance(message, Image)][::10]
     pictures = [cv2.imdecode(each, cv2.IMREAD_GRAYSCALE) for each in images]
     approve("scene-pictures", [cv2.resize(each, (16, 12), interpolation=cv2.INTER_AREA) for each in pictures], 2e-3)
 
 
-def test_ros_gets_what_it_got_and_gives_the_bodies_back(put: list[Message], tmp_path: Path, approve: Approve) -> None:
+def test_ros_gets_what_is_approved(put: list[Message], tmp_path: Path, approve: Approve) -> None:
     humans = pytest.importorskip("humans", reason="the bridge to ROS 2 is written with rosbags")
     (tmp_path / "mapping.yaml").write_text(MAPPING)
     room = humans.Room(ros_topics=TO_ROS, ros_hri_mapping=tmp_path / "mapping.yaml")
@@ -79,7 +79,7 @@ def test_ros_gets_what_it_got_and_gives_the_bodies_back(put: list[Message], tmp_
     approve("ros2", {"said": said, "withdrawn": room.withdrawn, "topics": sorted(room.declared)}, 1e-4)
 
 
-def test_bodies_come_back_from_ros_as_they_did(put: list[Message], approve: Approve) -> None:
+def test_bodies_come_back_from_ros_as_approved(put: list[Message], approve: Approve) -> None:
     pytest.importorskip("rosbags", reason="the bridge to ROS 2 is written with rosbags")
     from ros2_bridge.bridge import Ros2Bridge
     from ros2_bridge.settings import Settings

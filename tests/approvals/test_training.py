@@ -71,23 +71,23 @@ def continued(model: Model) -> list[object]:
     return [continuation_of(model).ahead(frames[end - 15 : end]) for end in ends]
 
 
-def test_a_model_of_the_default_kind(approve: Approve) -> None:
+def test_a_model_of_the_default_kind_learns_what_is_approved(approve: Approve) -> None:
     model = with_continuation(spotting_model(), taught().streams)
     approve("model", {"learnt": learnt(model), "continued": continued(model)}, 2e-3)
 
 
-def test_a_model_of_the_paper_s_kind(approve: Approve) -> None:
+def test_a_model_of_the_paper_s_kind_learns_what_is_approved(approve: Approve) -> None:
     model = with_continuation(train(taught().usable, FROM_TORSO), taught().streams)
     approve("model-paper", {"learnt": learnt(model), "continued": continued(model)}, 2e-3)
 
 
-def test_a_model_to_which_examples_are_added(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_model_learns_added_examples_as_approved(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(PRESETS, TINY.name, TINY)
     waves = [replace(each, label="wave", person="4") for each in taught().usable if each.label == "push"][:5]
     approve("model-added", learnt(add_to(spotting_model(), spotting_model().kept, waves, taught().streams)), 1e-2)
 
 
-def test_how_a_model_is_scored(other: Recording, approve: Approve) -> None:
+def test_a_model_is_scored_as_approved(other: Recording, approve: Approve) -> None:
     model = spotting_model()
     evaluation, found = evaluate(model, [other]), found_by(model, [other])
     tuning, nearest = tuned(model, [other]), nearest_neighbour([other], [other])
@@ -101,7 +101,7 @@ def test_how_a_model_is_scored(other: Recording, approve: Approve) -> None:
     approve("score-reports", lines_of(*shown))
 
 
-def test_how_intents_are_scored(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, approve: Approve) -> None:
+def test_intents_are_scored_as_approved(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, approve: Approve) -> None:
     monkeypatch.chdir(tmp_path)
     stream = sorted(messages(), key=lambda message: message.stamp_ns or 0)
     write_recording(Path("reaches.mcap"), stream, person="1", source="test")
