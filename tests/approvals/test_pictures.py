@@ -69,11 +69,11 @@ def test_a_model_is_drawn_as_approved(performed: Recording, tmp_path: Path, appr
     folder = tmp_path / "pictures"
     folder.mkdir()
     files = write(planned, folder, "svg")
-    approve("pictures", {name: drawn(folder / file) for name, file in files.items()}, 1e-3)
+    approve("pictures", {name: drawn(folder / file) for name, file in files.items()}, 1e-6)
 
 
 def test_a_recording_is_drawn_as_approved(tmp_path: Path, approve: Approve) -> None:
     of = scene(("lift", "push", "swing"), seed=9)
     recording = recorded(tmp_path, "scene", [*of.skeletons(), *of.marks()], "2")
     write_picture(read_take(recording), spotting_model(), tmp_path / "scene.svg")
-    approve("picture-recording", drawn(tmp_path / "scene.svg"), 1e-3)
+    approve("picture-recording", drawn(tmp_path / "scene.svg"), 1e-6)
