@@ -51,8 +51,8 @@ def test_intrinsics_are_found_and_drawn_as_approved(approve: Approve, monkeypatc
     png = coverage_picture(found, VIEWS)
     shape = cv2.imdecode(np.frombuffer(png, np.uint8), cv2.IMREAD_COLOR).shape
     about = [calibration_of(found, DAY), found.coverage, found.rms_of_views_px, shortcomings(VIEWS[:4])]
-    approve("intrinsics", {"found": found, "about": about, "tilts": nominal_tilts_deg(VIEWS)}, 1e-4)
-    approve("coverage-picture", {"calls": calls, "shape": shape}, 1e-3)
+    approve("intrinsics", {"found": found, "about": about, "tilts": nominal_tilts_deg(VIEWS)}, 1e-5)
+    approve("coverage-picture", {"calls": calls, "shape": shape}, 1e-5)
 
 
 def test_extrinsics_are_found_as_approved(approve: Approve) -> None:
@@ -61,7 +61,7 @@ def test_extrinsics_are_found_as_approved(approve: Approve) -> None:
     pairs = [Pair(own.name, own, other) for own, other in zip(VIEWS[1:6], seen, strict=True)]
     markers, people = calibration(MARKERS_LENS), calibration(PEOPLE_LENS)
     found = estimate_extrinsics(pairs, markers, people)
-    approve("extrinsics", [found, with_extrinsics(markers, found, DAY)], 1e-3)
+    approve("extrinsics", [found, with_extrinsics(markers, found, DAY)], 1e-5)
 
 
 def calibration(lens: Lens) -> Calibration:

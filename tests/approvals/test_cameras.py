@@ -92,4 +92,4 @@ def test_joints_are_drawn_into_a_picture_as_approved(approve: Approve, monkeypat
         for n, body in enumerate(bodies, start=1)
     ]
     picture = drawn(np.full((HEIGHT, WIDTH, 3), 90, np.uint8), agents, LENS, "3 s")
-    approve("overlay", {"calls": calls, "sheet": sheet([picture, picture // 2, picture // 3], 2)}, 1e-3)
+    approve("overlay", {"calls": calls, "sheet": sheet([picture, picture // 2, picture // 3], 2)}, 1e-5)

@@ -32,7 +32,7 @@ def test_repetitions_are_cut_as_approved(name: str, approve: Approve) -> None:
     skeletons = STREAMS[name].skeletons()
     found = {str(asked): cuts_of(skeletons, asked) for asked in (None, 3, 5)}
     lines = {asked: {f"{i:02}": line for i, line in enumerate(lines_of(cuts))} for asked, cuts in found.items()}
-    approve(f"cuts-{name}", {"found": found, "lines": lines}, 1e-4)
+    approve(f"cuts-{name}", {"found": found, "lines": lines}, 1e-6)
 
 
 def lines_of(cuts: Cuts | None) -> Iterator[str]:

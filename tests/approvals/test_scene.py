@@ -57,14 +57,14 @@ def of_each_type(messages: Iterable[object]) -> dict[str, list[object]]:
 
 def test_the_services_put_what_is_approved(put: list[Message], approve: Approve) -> None:
     """With the shipped model; after `make simulated-model` other answers are approved."""
-    approve("services", of_each_type(put), 1e-4)
+    approve("services", of_each_type(put), 1e-5)
 
 
 def test_the_scene_looks_as_approved(put: list[Message], approve: Approve) -> None:
     """The mean grey of each of 16 x 12 fields of each picture."""
     images = [np.frombuffer(message.data, np.uint8) for message in put if isinstance(message, Image)][::10]
     pictures = [cv2.imdecode(each, cv2.IMREAD_GRAYSCALE) for each in images]
-    approve("scene-pictures", [cv2.resize(each, (16, 12), interpolation=cv2.INTER_AREA) for each in pictures], 2e-3)
+    approve("scene-pictures", [cv2.resize(each, (16, 12), interpolation=cv2.INTER_AREA) for each in pictures], 1e-3)
 
 
 def test_ros_gets_what_is_approved(put: list[Message], tmp_path: Path, approve: Approve) -> None:
@@ -76,7 +76,7 @@ def test_ros_gets_what_is_approved(put: list[Message], tmp_path: Path, approve: 
             room.handle(message)
     room.wait(3)
     said = {**room.said, "event_json": [json.loads(each.data) for each in room.said["event_json"]]}
-    approve("ros2", {"said": said, "withdrawn": room.withdrawn, "topics": sorted(room.declared)}, 1e-4)
+    approve("ros2", {"said": said, "withdrawn": room.withdrawn, "topics": sorted(room.declared)}, 1e-5)
 
 
 def test_bodies_come_back_from_ros_as_approved(put: list[Message], approve: Approve) -> None:
@@ -90,7 +90,7 @@ def test_bodies_come_back_from_ros_as_approved(put: list[Message], approve: Appr
     back.foreign_node("back")
     skeletons = [message for message in put if isinstance(message, Skeleton)][:300:3]
     sent = [each for skeleton in skeletons for each in out.handle(skeleton) if is_of_bodies(each)]
-    approve("ros2-bodies", [skeleton for each in sent for skeleton in back.receive(received(each))], 1e-4)
+    approve("ros2-bodies", [skeleton for each in sent for skeleton in back.receive(received(each))], 1e-6)
 
 
 def is_of_bodies(output: object) -> bool:
