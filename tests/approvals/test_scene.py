@@ -15,6 +15,7 @@ from actum.node import TICK_NS, Tick
 from actum_command.scene_marks import mark_of
 from actum_command.simulated_model import SIMULATED_MODEL
 from approving import Approve
+from conftest import NEEDS_ROS2_EXTRA
 from scene_simulator.everyday import Everyday
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator
@@ -68,9 +69,11 @@ def test_the_scene_looks_as_approved(put: list[Message], approve: Approve) -> No
 
 
 def test_ros_gets_what_is_approved(put: list[Message], tmp_path: Path, approve: Approve) -> None:
-    humans = pytest.importorskip("humans", reason="the bridge to ROS 2 is written with rosbags")
+    pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
+    from humans import Room
+
     (tmp_path / "mapping.yaml").write_text(MAPPING)
-    room = humans.Room(ros_topics=TO_ROS, ros_hri_mapping=tmp_path / "mapping.yaml")
+    room = Room(ros_topics=TO_ROS, ros_hri_mapping=tmp_path / "mapping.yaml")
     for i, message in enumerate(put):
         if not isinstance(message, Skeleton | Intent) or i % 12 == 0:
             room.handle(message)
@@ -80,7 +83,7 @@ def test_ros_gets_what_is_approved(put: list[Message], tmp_path: Path, approve: 
 
 
 def test_bodies_come_back_from_ros_as_approved(put: list[Message], approve: Approve) -> None:
-    pytest.importorskip("rosbags", reason="the bridge to ROS 2 is written with rosbags")
+    pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
     from ros2_bridge.bridge import Ros2Bridge
     from ros2_bridge.settings import Settings
 
