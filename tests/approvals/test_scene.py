@@ -10,11 +10,12 @@ import pytest
 from benchmarks.rig.chain import Chain
 
 from actum.bridge import Foreign
-from actum.messages import Image, Message, Skeleton, Truth
+from actum.messages import Image, Intent, Message, Skeleton, Truth
 from actum.node import TICK_NS, Tick
 from actum_command.scene_marks import mark_of
 from actum_command.simulated_model import SIMULATED_MODEL
 from approving import Approve
+from conftest import NEEDS_ROS2_EXTRA
 from scene_simulator.everyday import Everyday
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator
@@ -30,7 +31,7 @@ intents: {put: {intent: PLACE_OBJECT, object: "{object}", agent: "{person}"}}
 
 def scene() -> Iterator[Message | Tick]:
     """Yield skeletons, images and truths of five actions and other doings, marks of some actions, and ticks."""
-    simulator = Simulator(balanced_programme(1, 4), 1, 4, image_hz=5, everyday=Everyday(pauses="short"))
+    simulator = Simulator(balanced_programme(1, 4), 1, 4, image_hz=3, everyday=Everyday(pauses="short"))
     ticks = 0
     for messages in simulator.frames():
         for message in messages:
@@ -62,17 +63,19 @@ def test_the_services_put_what_is_approved(put: list[Message], approve: Approve)
 
 def test_the_scene_looks_as_approved(put: list[Message], approve: Approve) -> None:
     """The mean grey of each of 16 x 12 fields of each picture."""
-    images = [np.frombuffer(message.data, np.uint8) for message in put if isinstance(message, Image)][::10]
+    images = [np.frombuffer(message.data, np.uint8) for message in put if isinstance(message, Image)][::6]
     pictures = [cv2.imdecode(each, cv2.IMREAD_GRAYSCALE) for each in images]
     approve("scene-pictures", [cv2.resize(each, (16, 12), interpolation=cv2.INTER_AREA) for each in pictures], 1e-3)
 
 
 def test_ros_gets_what_is_approved(put: list[Message], tmp_path: Path, approve: Approve) -> None:
-    humans = pytest.importorskip("humans", reason="the bridge to ROS 2 is written with rosbags")
+    pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
+    from humans import Room
+
     (tmp_path / "mapping.yaml").write_text(MAPPING)
-    room = humans.Room(ros_topics=TO_ROS, ros_hri_mapping=tmp_path / "mapping.yaml")
+    room = Room(ros_topics=TO_ROS, ros_hri_mapping=tmp_path / "mapping.yaml")
     for i, message in enumerate(put):
-        if not isinstance(message, Skeleton) or i % 12 == 0:
+        if not isinstance(message, Skeleton | Intent) or i % 12 == 0:
             room.handle(message)
     room.wait(3)
     said = {**room.said, "event_json": [json.loads(each.data) for each in room.said["event_json"]]}
@@ -80,7 +83,7 @@ def test_ros_gets_what_is_approved(put: list[Message], tmp_path: Path, approve: 
 
 
 def test_bodies_come_back_from_ros_as_approved(put: list[Message], approve: Approve) -> None:
-    pytest.importorskip("rosbags", reason="the bridge to ROS 2 is written with rosbags")
+    pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
     from ros2_bridge.bridge import Ros2Bridge
     from ros2_bridge.settings import Settings
 

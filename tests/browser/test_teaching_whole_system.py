@@ -103,7 +103,7 @@ def test_three_actions_are_taught_by_clicks_and_keys_and_recognised_without_mark
 ) -> None:
     began_s = time.monotonic()
     page = start(running, open_page, *SIMULATED)
-    page.get_by_text("The classifier has no model").wait_for()
+    page.locator("#state").get_by_text("The classifier has no model").wait_for()
     for action in ACTIONS:
         record(page, action)
     first = train_and_use(page)

@@ -121,10 +121,7 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
         _finish(output)
         return
     refuse_output(output)
-    if times is not None and label is None:
-        fail("--times needs the name of the repeated action: add --label NAME")
-    if label is not None:
-        refuse_label(label)
+    _refuse_labelling(label, times)
     stop = stop_on_signals()
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
     try:
@@ -141,6 +138,14 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     _report(stream, output, label)
     if isinstance(storing, RepetitionRecorder):
         _report_cuts(storing, output)
+
+
+def _refuse_labelling(label: str | None, times: int | None) -> None:
+    """Fail before the recording where it could not be labelled as asked."""
+    if label is not None:
+        refuse_label(label)
+    elif times is not None:
+        fail("--times needs the name of the repeated action: add --label NAME")
 
 
 def _fail_unfinished(output: Path, error: OSError) -> NoReturn:
