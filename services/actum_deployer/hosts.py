@@ -138,6 +138,8 @@ def _can_be_reached(address: str) -> bool:
         parsed = ip_address(address)
     except ValueError:
         return bool(HOST_NAME.fullmatch(address)) and not NUMERIC.fullmatch(address)
+    if parsed.version == 6 and parsed.is_link_local:
+        return False  # it holds on one interface alone, which endpoints and certificates cannot name
     return "%" not in address and not parsed.is_unspecified and not parsed.is_multicast
 
 

@@ -85,7 +85,7 @@ def test_a_sensor_that_cannot_be_is_refused(sensors: str) -> None:
     [
         "*", "a b", "a/b", "..", "-a", "a-", "a..b", "kinect-höst", "a#b", "a?b", "a;b", "a@b", "a\nb", "l" * 64,
         "fe80::1::2", ".".join(["a" * 60] * 5), "0.0.0.0", "::", "256.1.1.1", "1.2.3", "fe80::1%eth0", "$(id)", '"',
-        "224.0.0.1",
+        "224.0.0.1", "fe80::1",
     ],
 )  # fmt: skip
 def test_an_address_that_no_certificate_can_name_is_refused(address: str) -> None:
