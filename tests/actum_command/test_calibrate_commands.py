@@ -93,6 +93,29 @@ def test_a_calibration_named_as_a_picture_is_refused(folder: Path, tmp_path: Pat
     assert not (tmp_path / name).exists()
 
 
+@pytest.mark.parametrize("command", ["intrinsics", "markers"])
+def test_a_folder_that_is_missing_is_made(command: str, folder: Path, tmp_path: Path) -> None:
+    made = tmp_path / "new" / "folder" / ("m.pdf" if command == "markers" else "camera.yaml")
+    run(*(["markers"] if command == "markers" else ["calibrate", "intrinsics", folder]), "-o", made)
+    assert made.is_file()
+
+
+@pytest.mark.parametrize("command", ["intrinsics", "extrinsics", "markers"])
+def test_a_file_that_cannot_be_written_is_refused_before_any_work(command: str, folder: Path, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("no folder")
+    camera = tmp_path / "camera.yaml"
+    camera.write_text("no calibration")
+    output = tmp_path / "file" / ("m.pdf" if command == "markers" else "c.yaml")
+    arguments = {
+        "intrinsics": ["calibrate", "intrinsics", tmp_path / "no picture"],
+        "extrinsics": ["calibrate", "extrinsics", "--markers-camera", camera, "--people-camera", camera, folder],
+        "markers": ["markers"],
+    }
+    assert f"{output} cannot be written (Not a directory): give another file" in run(
+        *arguments[command], "-o", output, code=1
+    )
+
+
 def test_blurred_pictures_are_refused_and_nothing_is_written(folder: Path, tmp_path: Path) -> None:
     for file in folder.iterdir():
         cv2.imwrite(str(tmp_path / file.name), cv2.GaussianBlur(cv2.imread(str(file)), (0, 0), 5.0))

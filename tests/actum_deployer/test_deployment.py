@@ -31,9 +31,9 @@ def test_several_cameras_are_dealt_to_several_that_compute() -> None:
 @pytest.mark.parametrize(
     ("written", "endpoint"),
     [
-        ("[fe80::1]:7500", "[fe80::1]:7500"),
-        ("fe80::1", "[fe80::1]:7447"),
-        ("[fe80::1]", "[fe80::1]:7447"),
+        ("[2001:db8::1]:7500", "[2001:db8::1]:7500"),
+        ("2001:db8::1", "[2001:db8::1]:7447"),
+        ("[2001:db8::1]", "[2001:db8::1]:7447"),
         ("host:1", "host:1"),
     ],
 )

@@ -23,7 +23,7 @@ from actum_calibrator.view_set import GOOD_COVERAGE, PoorSetError
 from actum_command.commands.calibrate_up_command import up
 from actum_command.commands.plain_help import PlainTyper
 from actum_command.commands.service_flags import with_router_flags
-from actum_command.commands.terminal import connect, console, fail, failing_on, refuse_ending, say
+from actum_command.commands.terminal import connect, console, fail, failing_on, refuse_unwritable, say
 from actum_command.live_calibration import SilentStreamError, collect_pairs, collect_views
 
 app = PlainTyper(
@@ -90,6 +90,7 @@ def intrinsics(
         fit = estimate_intrinsics(views)
     calibration = calibration_of(fit, _today())
     with failing_on(OSError):
+        output.parent.mkdir(parents=True, exist_ok=True)
         calibration.save(output)
         write_whole(picture, coverage_picture(fit, views))
     _report_intrinsics(fit)
@@ -139,7 +140,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
             "give either pairs of pictures or --live, not both; --live needs the names of the two sensors, such as "
             "--live kinect1,kinect0"
         )
-    refuse_ending(output, ".yaml", ".yml")
+    refuse_unwritable(output, ".yaml", ".yml")
     finder = BoardFinder(_board(board, square_mm, marker_mm, family))
     with failing_on(CalibrationError, PairingError, OSError):
         cameras = Calibration.load(markers_camera), Calibration.load(people_camera)
@@ -147,6 +148,7 @@ def extrinsics(  # noqa: PLR0913, PLR0917 - one parameter is one option
         with _refusing_poor(unusable, output):
             fit = estimate_extrinsics(usable, *cameras)
         calibration = with_extrinsics(cameras[0], fit, _today())
+        output.parent.mkdir(parents=True, exist_ok=True)
         calibration.save(output)
     _report_extrinsics(fit, usable)
     say(f"written to {output} (calibration {calibration.id})")
@@ -162,7 +164,7 @@ def _board(squares: str, square_mm: float, marker_mm: float, family: str) -> Boa
 
 def _coverage_picture_of(output: Path, pictures: Sequence[Path]) -> Path:
     """Return the path of the coverage picture, beside the calibration; fail where either would replace an input."""
-    refuse_ending(output, ".yaml", ".yml")
+    refuse_unwritable(output, ".yaml", ".yml")
     picture = output.with_name(f"{output.stem}-coverage.png")
     inputs = {file.resolve() for file in pictures}
     for written in (output, picture):

@@ -8,7 +8,7 @@ import typer
 from actum.atomic_file import write_whole
 from actum_calibrator.board import Board, PatternError
 from actum_calibrator.sheet_sizes import SheetSize
-from actum_command.commands.terminal import failing_on, refuse_ending, say
+from actum_command.commands.terminal import failing_on, refuse_unwritable, say
 
 MOST_IDS = 1000  # as many as the largest family has
 
@@ -37,9 +37,10 @@ def markers(
     from actum_calibrator.board_sheet import board_sheet  # the PDF library is needed here alone
     from actum_calibrator.marker_sheet import marker_sheet
 
-    refuse_ending(output, ".pdf")
+    refuse_unwritable(output, ".pdf")
     with failing_on(PatternError, OSError):
         pdf = board_sheet(Board(), paper) if board else marker_sheet(family, _numbers(ids), size_mm, paper)
+        output.parent.mkdir(parents=True, exist_ok=True)
         write_whole(output, pdf)
     say(f"written to {output}: print it at 100 % ('actual size') and check that the printed ruler is 100 mm long")
     if board:
