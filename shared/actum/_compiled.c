@@ -1710,6 +1710,32 @@ static PyObject *comotion(PyObject *module, PyObject *args)
     return released(b, 6);
 }
 
+PyDoc_STRVAR(closings_doc,
+    "closings(hand_m, instants, step_m, object_m, distances_m, out)\n--\n\n"
+    "Write by which share of its last step of `step_m` or more a hand came nearer to an object until some instants, (n,).");
+static PyObject *closings(PyObject *module, PyObject *args)
+{
+    Py_buffer b[5];
+    double step_m;
+    if (!PyArg_ParseTuple(args, "y*y*dy*y*w*", &b[0], &b[1], &step_m, &b[2], &b[3], &b[4]))
+        return NULL;
+    const size_t n = b[1].len, all = n * sizeof(double), bytes[5] = {3 * all, 0, 3 * all, all, all};
+    if (!are_long_enough(b, bytes, 5))
+        return released(b, 5);
+    const char *asked = b[1].buf;
+    const double *hand = b[0].buf, *object = b[2].buf, *apart = b[3].buf;
+    double *out = b[4].buf;
+    for (size_t i = 0; i < n; i++) {
+        size_t since = asked[i] ? i : 0;
+        double step = 0.0;
+        while (since > 0 && (step = sqrt(squared_distance(hand + 3 * --since, hand + 3 * i))) < step_m)
+            step = 0.0;
+        double share = step > 0 ? (sqrt(squared_distance(object + 3 * i, hand + 3 * since)) - apart[i]) / step : 0.0;
+        out[i] = share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
+    }
+    return released(b, 5);
+}
+
 /* Steps of sequential training of a map whose weights are (dim, stride): each moves the units around an input's winner
    towards the input. The same pass adds up the distances to the next input, each sum component after component, of four
    components at a time unless one is missing (NaN). */
@@ -1827,6 +1853,7 @@ static PyMethodDef methods[] = {
     {"body", body, METH_VARARGS, body_doc},
     {"bounds", bounds, METH_VARARGS, bounds_doc},
     {"centred", centred, METH_VARARGS, centred_doc},
+    {"closings", closings, METH_VARARGS, closings_doc},
     {"comotion", comotion, METH_VARARGS, comotion_doc},
     {"contrasted", contrasted, METH_VARARGS, contrasted_doc},
     {"decoded", decoded, METH_VARARGS, decoded_doc},

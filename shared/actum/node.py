@@ -118,6 +118,26 @@ class OnDemand(Protocol):
     is_demanded: bool
 
 
+@runtime_checkable
+class Patient(Protocol):
+    """A node that mostly has time: the runtime then gives it messages of some topics several at a time.
+
+    Each message that comes alone wakes a thread up, just when who is in a hurry needs the processor, and finds the
+    caches cold.
+
+    Attributes:
+        may_wait: these topics.
+        has_time: whether it has time now.
+    """
+
+    may_wait: Sequence[keys.Topic]
+
+    @property
+    def has_time(self) -> bool:
+        """Whether nothing depends on the messages that come now."""
+        ...
+
+
 class Source(Servable, Protocol):
     """A sensor that yields frames in the order of their stamps. The runtime decides when to put each."""
 

@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import Field, TypeAdapter, ValidationError
 
+from action_fusion.choice.reaching import _closings
 from action_fusion.intake.buffers import Hands
 from action_fusion.tracks.comotion import Comotion, comotion
 from action_fusion.tracks.hand_tracks import HandTrack, known_smoothed
@@ -281,6 +282,16 @@ def test_a_hand_and_an_object_are_compared_alike(
         np.testing.assert_array_equal(getattr(compiled, field.name), getattr(plain, field.name))
 
 
+@given(st.integers(1, 100), st.sampled_from([0.0, 0.3, 1.0]), st.integers(0, 2**32 - 1))
+def test_hands_come_nearer_to_objects_by_the_same_share(instants: int, asked: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    hand = HandTrack("right", *wandering(rng, instants))
+    objects = [ObjectTrack(n, "", *wandering(rng, 20), np.ones(20, dtype=bool)) for n in range(3)]
+    pairs = [comotion(hand, each, reach_m=0.1, moved_m=0.03) for each in objects]
+    at = rng.random(instants) < asked
+    np.testing.assert_array_equal(*both(lambda: _closings(hand, pairs, at)))
+
+
 @given(st.integers(1, 50), st.integers(0, 50), st.integers(0, 2**32 - 1))
 def test_paths_are_the_same_to_the_bit_at_stamps_in_any_order(known: int, asked: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -397,6 +408,8 @@ def add_frames(moving: int = 3, inputs: int = 1, sums: tuple[int, int] = (4, 4))
         lambda: steps.resampled(np.zeros(1, np.int64), ZEROS[:45], bytes(8), 32, np.empty((48, 32), np.float32)),
         lambda: steps.movements(np.zeros(0, np.int64), ZEROS[:45], 1, bytes(4), bytes(4)),
         lambda: steps.movements(np.zeros(2, np.int64), ZEROS[:45], 1, bytes(4), bytes(4)),
+        lambda: steps.closings(np.zeros(6), np.zeros(3, bool), 0.1, np.zeros(9), np.zeros(3), np.empty(3)),
+        lambda: steps.closings(np.zeros(9), np.zeros(3, bool), 0.1, np.zeros(9), np.zeros(3), np.empty(2)),
         lambda: pool_windows([], [0]),
         lambda: pool_windows([0, 1], [2]),
         lambda: pool_windows([0, 1], [-1]),
