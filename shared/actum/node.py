@@ -120,14 +120,13 @@ class OnDemand(Protocol):
 
 @runtime_checkable
 class Patient(Protocol):
-    """A node that mostly has time: the runtime then gives it messages of some topics several at a time.
+    """A node that mostly has time: the runtime then reads some of its topics only now and then.
 
-    Each message that comes alone wakes a thread up, just when who is in a hurry needs the processor, and finds the
-    caches cold.
+    Several messages that are read together take less time than each that wakes a thread up, and they leave the
+    processor to the services that handle the newest frame.
 
     Attributes:
         may_wait: these topics.
-        has_time: whether it has time now.
     """
 
     may_wait: Sequence[keys.Topic]

@@ -84,7 +84,7 @@ class StepService(Service):
             self.end_at_bug(f"while handling a message on {key}", error, stop)
 
     def _pauses(self) -> Mapping[keys.Topic, Callable[[], object]]:
-        """Return by topic what threads call once nothing is left to hand on."""
+        """Return by topic what its thread calls before it waits for the next message."""
         return {}
 
     @abstractmethod
