@@ -66,6 +66,7 @@ class ActionFusion:
     inputs: tuple[keys.Topic, ...] = (keys.POSTURE, keys.OBJECTS, keys.ACTION)
     answers = keys.EVENT
     on_demand = keys.INTENT
+    may_wait = (keys.POSTURE, keys.OBJECTS)
 
     def __init__(self, settings: Settings) -> None:
         self.counters = Counters()
@@ -93,6 +94,11 @@ class ActionFusion:
     def is_busy(self) -> bool:
         """Whether an action waits for its samples, or is going on."""
         return bool(self._pending) or any(self._now_ns - seen_ns < ONGOING_NS for seen_ns in self._ongoing.values())
+
+    @property
+    def has_time(self) -> bool:
+        """Whether no action waits for samples, and nobody wants to know at once what people are about to touch."""
+        return not (self._pending or self.is_demanded)
 
     @property
     def commands(self) -> tuple[Command[Any, Any], ...]:

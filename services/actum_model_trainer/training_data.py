@@ -15,9 +15,8 @@ from actum_model_trainer.convolution_training import Convolved
 from actum_model_trainer.discriminants import folds_of
 from actum_model_trainer.pooling import PooledVectors
 from actum_model_trainer.samples import SegmentSample
-from som_classifier.body_movement import log_movements
+from som_classifier.body_movement import movements
 from som_classifier.first_layer import FirstMaps
-from som_classifier.kinematics import averaged, movement_m
 
 MIN_DURATION_S = 1 / 30  # one frame at 30 Hz: all stamps of a sample may be equal
 
@@ -47,15 +46,15 @@ class SampleMeasures:
     @classmethod
     def of(cls, samples: Sequence[SegmentSample], first: FirstMaps, measured: Sequence[Array]) -> "SampleMeasures":
         """Measure samples; `measured` are their postures as the classifier reads them."""
-        means = [averaged(sample.stamps_ns, sample.postures) for sample in samples]
+        moved = [movements(sample.stamps_ns, np.ascontiguousarray(sample.postures)) for sample in samples]
         return cls(
             np.array([sample.label for sample in samples]),
             np.array([sample.person for sample in samples]),
             np.array([sample.depth_inferred for sample in samples]),
             np.log([duration_s(sample) for sample in samples]),
             log_errors_of(first, measured),
-            np.array([log_movements(each) for each in means]),
-            np.array([movement_m(each) for each in means]),
+            np.array([of_parts for of_parts, _ in moved]),
+            np.array([moved_m for _, moved_m in moved]),
         )
 
     def __add__(self, more: "SampleMeasures") -> "SampleMeasures":

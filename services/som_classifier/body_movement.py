@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from actum.arrays import Array, Mask
+from actum.core import steps
 from actum.skeletons import INDEX
+from som_classifier.kinematics import AVERAGED_NS, averaged, movement_m
 from som_classifier.model import Recognition
 
 PARTS = (
@@ -17,8 +19,24 @@ PARTS = (
     tuple(INDEX[joint] for joint in ("neck", "head")),
 )
 """The joints of the legs, and those of the trunk."""
+_COMPILED_PARTS = tuple(np.array(part, np.int32) for part in PARTS)
 LEAST_M = 0.03
 """Legs or a trunk that move less are at rest: joints of people who stand still move by as much (m)."""
+
+
+def movements(stamps_ns: NDArray[np.int64], postures: Array) -> tuple[Array, float]:
+    """Return how much the parts move in a segment, as `log_movements`, and how far the person does, as `movement_m`.
+
+    Args:
+        stamps_ns: (n,), rising.
+        postures: (n, 15, 3), contiguous, as those of `averaged`.
+    """
+    moved = None if steps is None else steps.movements(stamps_ns, postures, AVERAGED_NS, *_COMPILED_PARTS)
+    if moved is not None:
+        *of_parts, moved_m = moved
+        return np.log([max(of_part, LEAST_M) for of_part in of_parts]), moved_m
+    means = averaged(stamps_ns, postures)
+    return log_movements(means), movement_m(means)
 
 
 def log_movements(means: Array) -> Array:
@@ -75,7 +93,9 @@ class BodyMovement:
         that move far more: these lower the familiarity. What is not seen raises no doubt.
         """
         still = 1.0 if evidence.moved_m >= self.least_m else evidence.moved_m / self.least_m
-        above = float(np.nan_to_num(evidence.moved - self.usual[action] - self.most_above).max())
+        of_parts = zip(evidence.moved.tolist(), self.usual[action], self.most_above, strict=True)
+        excesses = [moved - usual - most for moved, usual, most in of_parts]
+        above = max(0.0 if math.isnan(excess) else excess for excess in excesses)
         if still == 1.0 and above <= 0.0:
             return recognition
         return replace(

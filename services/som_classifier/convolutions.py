@@ -30,6 +30,7 @@ _FROM_OTHERS = {
 }
 _PAIRS = np.array([(INDEX[joint], INDEX[other]) for joint, others in _FROM_OTHERS.items() for other in others])
 """Joints, and those that they are also measured from, (pairs, 2)."""
+_PAIRS_32 = _PAIRS.astype(np.int32)
 COORDINATES = 3 * len(JOINTS) + 4 * len(_PAIRS)
 """Of the 15 joints, then of the first joint of each pair from the other one, then their distances."""
 WEIGHTS = 9
@@ -59,6 +60,10 @@ def resampled(stamps_ns: NDArray[np.int64], postures: Array) -> Floats32:
         stamps_ns: (n,), rising.
         postures: (n, 15, 3), at these stamps.
     """
+    if steps is not None:
+        series, in_turn = np.empty((COORDINATES, INSTANTS), np.float32), np.ascontiguousarray(postures)
+        if steps.resampled(stamps_ns, in_turn, _PAIRS_32, INSTANTS, series):
+            return series
     rows = postures.reshape(len(postures), -1)
     if np.isnan(rows).any():
         rows = np.nan_to_num(np.stack([_interpolated(column) for column in rows.T], axis=1))
@@ -101,9 +106,10 @@ class Convolutions:
         """Return the share of the instants at which each response exceeds each of its biases, (FILTERS * biases,)."""
         if steps is not None:
             compiled = np.empty(self.biases.size, np.float32)
-            inputs = self._inputs(series)
-            biases = np.ascontiguousarray(self.biases)
-            steps.exceeding(inputs, SMALL_KERNELS, DILATED, WEIGHTS, biases, COUNTED_NUMBERS, COUNTS, compiled)
+            inputs, biases = self._summed(series), np.ascontiguousarray(self.biases)
+            steps.exceeding(
+                inputs, PLAIN_FILTERS, SMALL_KERNELS, DILATED, WEIGHTS, biases, COUNTED_NUMBERS, COUNTS, compiled
+            )
             return compiled
         exceeds = _packed(self.responses(series)[:, None, :] > self.biases[:, :, None])
         shares: Floats32 = np.divide(np.bitwise_count(exceeds & PACKED[:, None]), COUNTS[:, None], dtype=np.float32)
@@ -111,11 +117,16 @@ class Convolutions:
 
     def _inputs(self, series: Floats32) -> Floats32:
         """Return what each filter is applied to: the sum of its coordinates, or by how much that has just changed."""
-        inputs: Floats32 = np.ascontiguousarray(self.coordinates @ series)
+        inputs = self._summed(series)
         changing = inputs[PLAIN_FILTERS:]
         changing[:, 1:] = np.diff(changing)
         changing[:, 0] = 0.0
         return inputs
+
+    def _summed(self, series: Floats32) -> Floats32:
+        """Return the sum of each filter's coordinates, (FILTERS, INSTANTS)."""
+        summed: Floats32 = np.ascontiguousarray(self.coordinates @ series)
+        return summed
 
 
 def _responses(inputs: Floats32) -> Floats32:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from actum.arrays import Array, Indices, stacked
 from actum.node import SECOND_NS
 from actum.som import Som
-from som_classifier.body_movement import BodyMovement, Evidence, log_movements
+from som_classifier.body_movement import BodyMovement, Evidence, movements
 from som_classifier.convolutions import COORDINATES, FILTERS, Convolutions, SecondOpinion, resampled
 from som_classifier.first_layer import CHANNELS, INPUT_SIZES, MAP_INPUTS, Channel, FirstMaps
 from som_classifier.frame_activity import (
@@ -27,7 +27,6 @@ from som_classifier.frame_activity import (
 )
 from som_classifier.frames import Frame
 from som_classifier.handedness import mirrored
-from som_classifier.kinematics import averaged, movement_m
 from som_classifier.map_activity import soft_activity, without_repeats
 from som_classifier.model import Arrays, Model, Recognition
 from som_classifier.pyramid import PrefixSums, Pyramid
@@ -252,9 +251,7 @@ class PyramidModel(Model):
         postures = stacked(list(map(np.ascontiguousarray, of_frames)), *of_frames[0].shape)
         as_read = mirrored(postures) if self.reads_in_mirror(activities) else postures
         features = self.opinion.convolutions.features(resampled(stamps_ns, as_read))
-        pooled = self._pooled(activities)
-        means = averaged(stamps_ns, postures)
-        return Evidence(pooled, features, log_movements(means), movement_m(means))
+        return Evidence(self._pooled(activities), features, *movements(stamps_ns, postures))
 
     def _number_problem(self) -> str | None:
         """Return the first array whose numbers are not of the kind they have to be, None where there is none."""

@@ -328,31 +328,25 @@ static PyObject *pooled_windows(PyObject *module, PyObject *args)
     return released(b, 4);
 }
 
-/* NumPy's pairwise sum of contiguous numbers. */
-static float pairwise_sum(const float *x, Py_ssize_t n)
-{
-    if (n < 8) {
-        float sum = -0.0f;
-        for (Py_ssize_t i = 0; i < n; i++)
-            sum += x[i];
-        return sum;
+/* NumPy's pairwise sum of numbers that are so many apart. */
+#define PAIRWISE_SUM(name, type, apart)                                                                                 \
+    static type name(const type *x, Py_ssize_t n)                                                                       \
+    {                                                                                                                   \
+        type r[8] = {-(type)0}, sum = -(type)0;                                                                         \
+        Py_ssize_t half = n / 2 - n / 2 % 8, i = 0;                                                                     \
+        if (n > 128)                                                                                                    \
+            return name(x, half) + name(x + half * apart, n - half);                                                    \
+        for (; i < n - n % 8; i += 8)                                                                                   \
+            for (int k = 0; k < 8; k++)                                                                                 \
+                r[k] = i ? r[k] + x[(i + k) * apart] : x[k * apart];                                                    \
+        if (n >= 8)                                                                                                     \
+            sum = ((r[0] + r[1]) + (r[2] + r[3])) + ((r[4] + r[5]) + (r[6] + r[7]));                                    \
+        for (; i < n; i++)                                                                                              \
+            sum += x[i * apart];                                                                                        \
+        return sum;                                                                                                     \
     }
-    if (n > 128) {
-        Py_ssize_t half = n / 2;
-        half -= half % 8;
-        return pairwise_sum(x, half) + pairwise_sum(x + half, n - half);
-    }
-    float r[8];
-    Py_ssize_t i;
-    memcpy(r, x, sizeof r);
-    for (i = 8; i < n - n % 8; i += 8)
-        for (int k = 0; k < 8; k++)
-            r[k] += x[i + k];
-    float sum = ((r[0] + r[1]) + (r[2] + r[3])) + ((r[4] + r[5]) + (r[6] + r[7]));
-    for (; i < n; i++)
-        sum += x[i];
-    return sum;
-}
+PAIRWISE_SUM(pairwise_sum, float, 1)
+PAIRWISE_SUM(pairwise_sum_of_rows, double, COORDINATES)
 
 /* Write what the maps are shown of a frame and of its mirror image, relative to their centres. */
 static void map_inputs(const double *posture, const double *velocity, const int32_t *mirror, const double *signs,
@@ -1343,19 +1337,21 @@ VECTORISED static int count_above(const float *response, float bias, const int32
 }
 
 PyDoc_STRVAR(exceeding_doc,
-    "exceeding(inputs, kernels, dilations, weights, biases, counted, counts, out)\n--\n\n"
-    "Write for each filter and each of its biases the share of the instants that count at which the response exceeds it.");
+    "exceeding(inputs, plain, kernels, dilations, weights, biases, counted, counts, out)\n--\n\n"
+    "Write for each filter and each of its biases the share of the instants that count at which the response exceeds it.\n"
+    "The filters behind the `plain` ones respond to how their inputs have just changed.");
 static PyObject *exceeding(PyObject *module, PyObject *args)
 {
     Py_buffer b[7];
     int weights;
-    if (!PyArg_ParseTuple(args, "y*y*y*iy*y*y*w*", &b[0], &b[1], &b[2], &weights, &b[3], &b[4], &b[5], &b[6]))
+    Py_ssize_t plain;
+    if (!PyArg_ParseTuple(args, "y*ny*y*iy*y*y*w*", &b[0], &plain, &b[1], &b[2], &weights, &b[3], &b[4], &b[5], &b[6]))
         return NULL;
     const int8_t *kernels = b[1].buf;
     const int32_t *dilations = b[2].buf;
     const int32_t *counted = b[4].buf;
     const float *inputs = b[0].buf, *biases = b[3].buf, *counts = b[5].buf;
-    float *out = b[6].buf, response[MOST_INSTANTS];
+    float *out = b[6].buf, changes[MOST_INSTANTS] = {0}, response[MOST_INSTANTS];
     Py_ssize_t filters = b[5].len / (Py_ssize_t)sizeof(float), of_each = b[6].len / (Py_ssize_t)sizeof(float) / filters;
     Py_ssize_t kernel_count = b[1].len / weights;
     int instants = (int)(b[4].len / 4 / filters);
@@ -1365,14 +1361,159 @@ static PyObject *exceeding(PyObject *module, PyObject *args)
     }
     Py_BEGIN_ALLOW_THREADS
     for (Py_ssize_t f = 0; f < filters; f++) {
-        respond(inputs + f * instants, kernels + f % kernel_count * weights, weights, dilations[f / kernel_count], instants,
-                response);
+        const float *input = inputs + f * instants;
+        for (int at = 1; at < instants; at++)
+            changes[at] = input[at] - input[at - 1];
+        respond(f < plain ? input : changes, kernels + f % kernel_count * weights, weights, dilations[f / kernel_count],
+                instants, response);
         for (Py_ssize_t n = 0; n < of_each; n++)
             out[f * of_each + n]
                 = (float)count_above(response, biases[f * of_each + n], counted + f * instants, instants) / counts[f];
     }
     Py_END_ALLOW_THREADS
     return released(b, 7);
+}
+
+/* Whether a number of some is unknown (NaN). */
+static int has_unknown(const double *numbers, Py_ssize_t count)
+{
+    while (count-- > 0)
+        if (isnan(numbers[count]))
+            return 1;
+    return 0;
+}
+
+/* Write joints as they lie between two postures, (45,), at a share of the time from one to the other, then those of the
+   first joint of each pair from the other one, and their distances; each `apart` numbers behind the one before it. */
+static void place(const double *before, const double *after, double share, const int32_t *pairs, Py_ssize_t count,
+                  Py_ssize_t apart, float *out)
+{
+    for (int i = 0; i < COORDINATES; i++)
+        out[i * apart] = (float)((1 - share) * before[i] + share * after[i]);
+    float *from = out + COORDINATES * apart, *length = from + 3 * count * apart;
+    for (Py_ssize_t k = 0; k < count; k++) {
+        float d[3];
+        for (int axis = 0; axis < 3; axis++) {
+            d[axis] = out[(3 * pairs[2 * k] + axis) * apart] - out[(3 * pairs[2 * k + 1] + axis) * apart];
+            from[(3 * k + axis) * apart] = d[axis];
+        }
+        length[k * apart] = sqrtf(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    }
+}
+
+PyDoc_STRVAR(resampled_doc,
+    "resampled(stamps_ns, postures, pairs, instants, out) -> bool\n--\n\n"
+    "Write the coordinates of postures (n, 15, 3) at equal steps of time, (coordinates, instants). Return whether all\n"
+    "were known; if not, nothing is written.");
+static PyObject *resampled(PyObject *module, PyObject *args)
+{
+    Py_buffer b[4];
+    Py_ssize_t instants;
+    if (!PyArg_ParseTuple(args, "y*y*y*nw*", &b[0], &b[1], &b[2], &instants, &b[3]))
+        return NULL;
+    const Py_ssize_t last = b[0].len / (Py_ssize_t)sizeof(int64_t) - 1, pairs = b[2].len / (2 * (Py_ssize_t)sizeof(int32_t));
+    const size_t bytes[4] = {sizeof(int64_t), COORDINATES * b[0].len, 0, (COORDINATES + 4 * pairs) * instants * sizeof(float)};
+    const int64_t *ns = b[0].buf;
+    const double *rows = b[1].buf;
+    int is_known = are_long_enough(b, bytes, 4) && !has_unknown(rows, (last + 1) * COORDINATES);
+    for (Py_ssize_t i = 0, k = 0; i < instants && is_known; i++) {
+        double step = ((double)ns[last] - (double)ns[0]) / (double)(instants - 1);
+        double at_ns = i < instants - 1 ? (double)i * step + (double)ns[0] : (double)ns[last];
+        while (k < last && at_ns >= (double)ns[k + 1])
+            k++;
+        double since_ns = at_ns - (double)ns[k], at = (double)k;
+        if (k < last && since_ns > 0)
+            at = 1.0 / ((double)ns[k + 1] - (double)ns[k]) * since_ns + at;
+        Py_ssize_t before = (Py_ssize_t)at < last ? (Py_ssize_t)at : last - 1;
+        before = before < 0 ? 0 : before;
+        const double *row = rows + before * COORDINATES;
+        place(row, before < last ? row + COORDINATES : row, at - (double)before, b[2].buf, pairs, instants, (float *)b[3].buf + i);
+    }
+    Py_XDECREF(released(b, 4));
+    return PyErr_Occurred() ? NULL : PyBool_FromLong(is_known);
+}
+
+/* Replace postures by their means over intervals (ns) of their stamps, and return how many these are. */
+static Py_ssize_t average(const int64_t *ns, double *postures, Py_ssize_t n, int64_t interval_ns)
+{
+    Py_ssize_t count = 0, after;
+    for (Py_ssize_t first = 0; first < n; first = after, count++) {
+        for (after = first + 1; after < n && (ns[after] - ns[0]) / interval_ns == (ns[first] - ns[0]) / interval_ns;)
+            after++;
+        const double *from = postures + first * COORDINATES;
+        for (int i = 0; i < COORDINATES; i++)
+            postures[count * COORDINATES + i]
+                = (from[i] + pairwise_sum_of_rows(from + COORDINATES + i, after - first - 1)) / (double)(after - first);
+    }
+    return count;
+}
+
+/* The mean of some joints' deviations from where they are on average in n postures. */
+static double mean_deviation(const double *postures, Py_ssize_t n, const int32_t *joints, Py_ssize_t count)
+{
+    double summed = 0.0;
+    for (Py_ssize_t k = 0; k < count; k++) {
+        double variance = 0.0;
+        for (int axis = 0; axis < 3; axis++) {
+            const double *x = postures + 3 * joints[k] + axis;
+            double mean = 0.0, squares = 0.0;
+            for (Py_ssize_t i = 0; i < n; i++)
+                mean += x[i * COORDINATES];
+            mean /= (double)n;
+            for (Py_ssize_t i = 0; i < n; i++)
+                squares += (x[i * COORDINATES] - mean) * (x[i * COORDINATES] - mean);
+            variance += squares / (double)n;
+        }
+        summed += sqrt(variance);
+    }
+    return summed / (double)count;
+}
+
+/* The squared distances between two postures of the two joints that are farthest apart, added up. */
+static double farthest_apart2(const double *one, const double *other)
+{
+    double most = 0.0, second = 0.0;
+    for (int joint = 0; joint < JOINTS; joint++) {
+        double x = one[3 * joint] - other[3 * joint], y = one[3 * joint + 1] - other[3 * joint + 1];
+        double z = one[3 * joint + 2] - other[3 * joint + 2], apart2 = x * x + y * y + z * z;
+        second = apart2 > most ? most : apart2 > second ? apart2 : second;
+        most = apart2 > most ? apart2 : most;
+    }
+    return most + second;
+}
+
+PyDoc_STRVAR(movements_doc,
+    "movements(stamps_ns, postures, interval_ns, legs, trunk) -> (legs_m, trunk_m, moved_m) or None\n--\n\n"
+    "Return how much the joints of the legs and of the trunk move in mean postures, and the distance between the two most\n"
+    "different ones of these; None where a coordinate is unknown.");
+static PyObject *movements(PyObject *module, PyObject *args)
+{
+    Py_buffer b[4];
+    long long interval_ns;
+    if (!PyArg_ParseTuple(args, "y*y*Ly*y*", &b[0], &b[1], &interval_ns, &b[2], &b[3]))
+        return NULL;
+    const size_t bytes[4] = {sizeof(int64_t), COORDINATES * b[0].len, sizeof(int32_t), sizeof(int32_t)};
+    double *means = PyMem_Malloc(COORDINATES * b[0].len + 1), of_parts[2], moved2 = 0.0;
+    if (means == NULL)
+        PyErr_NoMemory();
+    int is_known = !PyErr_Occurred() && are_long_enough(b, bytes, 4) && !has_unknown(b[1].buf, COORDINATES * b[0].len / 8);
+    if (is_known) {
+        memcpy(means, b[1].buf, COORDINATES * b[0].len);
+        Py_ssize_t count = average(b[0].buf, means, b[0].len / (Py_ssize_t)sizeof(int64_t), interval_ns);
+        for (int part = 0; part < 2; part++)
+            of_parts[part] = mean_deviation(means, count, b[2 + part].buf, b[2 + part].len / (Py_ssize_t)sizeof(int32_t));
+        for (Py_ssize_t i = 0; i < count; i++)
+            for (Py_ssize_t k = 0; k < i; k++) {
+                double apart2 = farthest_apart2(means + i * COORDINATES, means + k * COORDINATES);
+                moved2 = apart2 > moved2 ? apart2 : moved2;
+            }
+    }
+    PyMem_Free(means);
+    PyObject *none = released(b, 4);
+    if (none == NULL || !is_known)
+        return none;
+    Py_DECREF(none);
+    return Py_BuildValue("ddd", of_parts[0], of_parts[1], sqrt(moved2 / 2));
 }
 
 /* A path: n stamps (ns), which rise, and n positions in metres, (n, 3). */
@@ -1569,6 +1710,32 @@ static PyObject *comotion(PyObject *module, PyObject *args)
     return released(b, 6);
 }
 
+PyDoc_STRVAR(closings_doc,
+    "closings(hand_m, instants, step_m, object_m, distances_m, out)\n--\n\n"
+    "Write by which share of its last step of `step_m` or more a hand came nearer to an object until some instants, (n,).");
+static PyObject *closings(PyObject *module, PyObject *args)
+{
+    Py_buffer b[5];
+    double step_m;
+    if (!PyArg_ParseTuple(args, "y*y*dy*y*w*", &b[0], &b[1], &step_m, &b[2], &b[3], &b[4]))
+        return NULL;
+    const size_t n = b[1].len, all = n * sizeof(double), bytes[5] = {3 * all, 0, 3 * all, all, all};
+    if (!are_long_enough(b, bytes, 5))
+        return released(b, 5);
+    const char *asked = b[1].buf;
+    const double *hand = b[0].buf, *object = b[2].buf, *apart = b[3].buf;
+    double *out = b[4].buf;
+    for (size_t i = 0; i < n; i++) {
+        size_t since = asked[i] ? i : 0;
+        double step = 0.0;
+        while (since > 0 && (step = sqrt(squared_distance(hand + 3 * --since, hand + 3 * i))) < step_m)
+            step = 0.0;
+        double share = step > 0 ? (sqrt(squared_distance(object + 3 * i, hand + 3 * since)) - apart[i]) / step : 0.0;
+        out[i] = share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share;
+    }
+    return released(b, 5);
+}
+
 /* Steps of sequential training of a map whose weights are (dim, stride): each moves the units around an input's winner
    towards the input. The same pass adds up the distances to the next input, each sum component after component, of four
    components at a time unless one is missing (NaN). */
@@ -1686,6 +1853,7 @@ static PyMethodDef methods[] = {
     {"body", body, METH_VARARGS, body_doc},
     {"bounds", bounds, METH_VARARGS, bounds_doc},
     {"centred", centred, METH_VARARGS, centred_doc},
+    {"closings", closings, METH_VARARGS, closings_doc},
     {"comotion", comotion, METH_VARARGS, comotion_doc},
     {"contrasted", contrasted, METH_VARARGS, contrasted_doc},
     {"decoded", decoded, METH_VARARGS, decoded_doc},
@@ -1694,10 +1862,12 @@ static PyMethodDef methods[] = {
     {"interpolated", interpolated, METH_VARARGS, interpolated_doc},
     {"learned", learned, METH_VARARGS, learned_doc},
     {"left_arm_acts", left_arm_acts, METH_VARARGS, left_arm_acts_doc},
+    {"movements", movements, METH_VARARGS, movements_doc},
     {"plain_joints_or", (PyCFunction)(void (*)(void))plain_joints_or, METH_FASTCALL, plain_joints_or_doc},
     {"pooled", pooled, METH_VARARGS, pooled_doc},
     {"pooled_windows", pooled_windows, METH_VARARGS, pooled_windows_doc},
     {"posture", posture, METH_VARARGS, posture_doc},
+    {"resampled", resampled, METH_VARARGS, resampled_doc},
     {"running_sums", running_sums, METH_VARARGS, running_sums_doc},
     {"smoothed", smoothed, METH_VARARGS, smoothed_doc},
     {"smoothed_hand", smoothed_hand, METH_VARARGS, smoothed_hand_doc},

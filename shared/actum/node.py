@@ -118,6 +118,25 @@ class OnDemand(Protocol):
     is_demanded: bool
 
 
+@runtime_checkable
+class Patient(Protocol):
+    """A node that mostly has time: the runtime then reads some of its topics only now and then.
+
+    Several messages that are read together take less time than each that wakes a thread up, and they leave the
+    processor to the services that handle the newest frame.
+
+    Attributes:
+        may_wait: these topics.
+    """
+
+    may_wait: Sequence[keys.Topic]
+
+    @property
+    def has_time(self) -> bool:
+        """Whether nothing depends on the messages that come now."""
+        ...
+
+
 class Source(Servable, Protocol):
     """A sensor that yields frames in the order of their stamps. The runtime decides when to put each."""
 

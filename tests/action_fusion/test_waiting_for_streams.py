@@ -224,3 +224,14 @@ def test_the_longest_segment_is_still_held_when_its_action_comes_late(node) -> N
     events_of(node, *[PUSH.objects_seen(t) for t in range(-1, 65)])
     (event,) = events_of(node, action("push", end_s=60.0))
     assert event.result == "0.20 m away"
+
+
+def test_streams_may_wait_until_an_action_waits_for_them(node: ActionFusion) -> None:
+    """The runtime then reads them several messages at a time, but at once while somebody listens to intents."""
+    assert not node.has_time
+    node.is_demanded = False
+    assert node.has_time
+    assert list(node.handle(SEGMENTS[0])) == []
+    assert not node.has_time
+    assert events_of(node, *POSTURES, *SIGHTINGS)
+    assert node.has_time

@@ -71,6 +71,26 @@ def test_what_has_come_together_is_handed_on_in_one_turn_but_others_get_theirs(s
     assert turns.received == [MOST_IN_A_TURN, 3]
 
 
+def test_what_comes_in_the_pause_of_a_topic_is_handed_on_after_it(session: zenoh.Session) -> None:
+    inbox, received = Inbox(session, (keys.STATUS,), "kinect0", Reach.unknown(0.0)), list[zenoh.Sample]()
+    pausing, is_over = threading.Event(), threading.Event()
+
+    def pause() -> None:
+        pausing.set()
+        assert is_over.wait(10)
+
+    inbox.start(received.append, pauses={keys.STATUS: pause})
+    session.put(keys.key(keys.STATUS, "kinect0", "anybody"), b"")
+    assert pausing.wait(10)
+    for _ in range(3):
+        session.put(keys.key(keys.STATUS, "kinect0", "anybody"), b"")
+    assert len(received) == 1
+    is_over.set()
+    wait_until(lambda: len(received) == 4, "those that came in the pause are received")
+    inbox.close()
+    session.close()
+
+
 def test_a_subscription_that_is_closed_while_its_message_is_handled_ends_without_an_error(
     session: zenoh.Session, monkeypatch: pytest.MonkeyPatch
 ) -> None:

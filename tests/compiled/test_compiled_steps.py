@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import Field, TypeAdapter, ValidationError
 
+from action_fusion.choice.reaching import _closings
 from action_fusion.intake.buffers import Hands
 from action_fusion.tracks.comotion import Comotion, comotion
 from action_fusion.tracks.hand_tracks import HandTrack, known_smoothed
@@ -30,9 +31,10 @@ from people import FRAME_NS, STANDING, skeleton
 from pose_preprocessor.body import body_of, known_body
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
-from som_classifier.convolutions import COORDINATES, FILTERS, INSTANTS, Convolutions
+from som_classifier.body_movement import movements
+from som_classifier.convolutions import COORDINATES, FILTERS, INSTANTS, Convolutions, resampled
 from som_classifier.frames import Frame, frame_of
-from som_classifier.handedness import left_arm_acts, limb_moments
+from som_classifier.handedness import left_arm_acts, limb_moments, mirrored
 from som_classifier.kinematics import KinematicsFilter
 from som_classifier.pyramid import PrefixSums, Pyramid, running_sums
 from som_classifier.spotting.decoding import Decoder, Spans, decoded
@@ -239,6 +241,21 @@ def test_features_of_convolutions_are_the_same_to_the_bit(seed: int) -> None:
     np.testing.assert_array_equal(*both(lambda: convolutions.features(series)))
 
 
+@given(st.integers(1, 150), st.integers(1, 200), st.sampled_from([0.0, 0.01, 1.0]), st.integers(0, 2**32 - 1))
+def test_what_complete_segments_are_judged_by_is_the_same_to_the_bit(
+    frames: int, rate_hz: int, lacking: float, seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    stamps_ns = rng.integers(0, 2**62) + np.cumsum(rng.integers(1, 2 * SECOND_NS // rate_hz, frames))
+    postures = np.cumsum(rng.normal(0.0, 0.03, (frames, 15, 3)), axis=0)
+    postures[rng.random((frames, 15)) < lacking] = np.nan
+    mirror_image = mirrored(postures)
+    np.testing.assert_array_equal(*both(lambda: resampled(stamps_ns, mirror_image)))
+    (parts, moved_m), (parts_by_numpy, moved_by_numpy_m) = both(lambda: movements(stamps_ns, postures))
+    np.testing.assert_array_equal(parts, parts_by_numpy)
+    assert moved_m == moved_by_numpy_m
+
+
 @given(st.integers(0, 30), st.integers(0, 2**32 - 1))
 def test_running_sums_are_the_same_to_the_bit(frames: int, seed: int) -> None:
     activities = np.random.default_rng(seed).random((frames, 50)).astype(np.float32)
@@ -263,6 +280,16 @@ def test_a_hand_and_an_object_are_compared_alike(
     compiled, plain = both(lambda: comotion(hand, track, 0.25, moved_m))
     for field in fields(Comotion):
         np.testing.assert_array_equal(getattr(compiled, field.name), getattr(plain, field.name))
+
+
+@given(st.integers(1, 100), st.sampled_from([0.0, 0.3, 1.0]), st.integers(0, 2**32 - 1))
+def test_hands_come_nearer_to_objects_by_the_same_share(instants: int, asked: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    hand = HandTrack("right", *wandering(rng, instants))
+    objects = [ObjectTrack(n, "", *wandering(rng, 20), np.ones(20, dtype=bool)) for n in range(3)]
+    pairs = [comotion(hand, each, reach_m=0.1, moved_m=0.03) for each in objects]
+    at = rng.random(instants) < asked
+    np.testing.assert_array_equal(*both(lambda: _closings(hand, pairs, at)))
 
 
 @given(st.integers(1, 50), st.integers(0, 50), st.integers(0, 2**32 - 1))
@@ -376,6 +403,13 @@ def add_frames(moving: int = 3, inputs: int = 1, sums: tuple[int, int] = (4, 4))
         lambda: compare(np.zeros((9, 3)), np.zeros((1, 3)), np.empty(72), np.empty(27, np.bool_)),
         lambda: compare(np.zeros((9, 3)), np.zeros((2, 3)), np.empty(71), np.empty(27, np.bool_)),
         lambda: compare(np.zeros((9, 3)), np.zeros((2, 3)), np.empty(72), np.empty(26, np.bool_)),
+        lambda: steps.resampled(np.zeros(0, np.int64), ZEROS[:45], b"", 32, np.empty((45, 32), np.float32)),
+        lambda: steps.resampled(np.zeros(2, np.int64), ZEROS[:45], b"", 32, np.empty((45, 32), np.float32)),
+        lambda: steps.resampled(np.zeros(1, np.int64), ZEROS[:45], bytes(8), 32, np.empty((48, 32), np.float32)),
+        lambda: steps.movements(np.zeros(0, np.int64), ZEROS[:45], 1, bytes(4), bytes(4)),
+        lambda: steps.movements(np.zeros(2, np.int64), ZEROS[:45], 1, bytes(4), bytes(4)),
+        lambda: steps.closings(np.zeros(6), np.zeros(3, bool), 0.1, np.zeros(9), np.zeros(3), np.empty(3)),
+        lambda: steps.closings(np.zeros(9), np.zeros(3, bool), 0.1, np.zeros(9), np.zeros(3), np.empty(2)),
         lambda: pool_windows([], [0]),
         lambda: pool_windows([0, 1], [2]),
         lambda: pool_windows([0, 1], [-1]),

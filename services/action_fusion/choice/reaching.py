@@ -10,6 +10,7 @@ from action_fusion.tracks.comotion import Comotion, distances_m
 from action_fusion.tracks.hand_tracks import HandTrack, stops
 from action_fusion.tracks.object_tracks import noise_m
 from actum.arrays import Array, Indices, Mask, median
+from actum.core import steps
 
 REACH_STEP_M = 0.05
 """Length of a reach's last step, which gives its direction: several times a joint's noise."""
@@ -83,12 +84,17 @@ def _closings(hand: HandTrack, pairs: Sequence[Comotion], instants: Mask) -> Arr
 
     The share is measured at the given instants (n,), and 0 at all others.
     """
+    if steps is not None:
+        compiled = np.empty((len(pairs), len(instants)))
+        for pair, out in zip(pairs, compiled, strict=True):
+            steps.closings(hand.positions_m, instants, REACH_STEP_M, pair.object_m, pair.distances_m, out)
+        return compiled
     since = _last_instants_away(hand.positions_m, REACH_STEP_M, instants)
-    steps = np.linalg.norm(hand.positions_m - hand.positions_m[since], axis=1)
-    stepped = (since >= 0) & (steps > 0)
+    steps_m = np.linalg.norm(hand.positions_m - hand.positions_m[since], axis=1)
+    stepped = (since >= 0) & (steps_m > 0)
     before_m = np.stack([np.linalg.norm(pair.object_m - hand.positions_m[since], axis=1) for pair in pairs])
     nearer = before_m - np.stack([pair.distances_m for pair in pairs])
-    closings: Array = np.clip(np.divide(nearer, steps, out=np.zeros_like(nearer), where=stepped), 0.0, 1.0)
+    closings: Array = np.clip(np.divide(nearer, steps_m, out=np.zeros_like(nearer), where=stepped), 0.0, 1.0)
     return closings
 
 

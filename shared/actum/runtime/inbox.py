@@ -1,9 +1,10 @@
 """Subscriptions with rings: a node reads each by a thread of its own, so that no stream can stall another."""
 
 import threading
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import zenoh
 
@@ -81,16 +82,22 @@ class Inbox:
             for topic in topics
         ]
         self._threads: list[threading.Thread] = []
-        self._sensor = sensor
+        self._sensor, self._topics = sensor, topics
 
-    def start(self, receive: Callable[[zenoh.Sample], None], turn: AbstractContextManager[object] = FREE) -> None:
+    def start(
+        self,
+        receive: Callable[[zenoh.Sample], None],
+        turn: AbstractContextManager[object] = FREE,
+        pauses: Mapping[keys.Topic, Callable[[], object]] = MappingProxyType({}),
+    ) -> None:
         """Call `receive` for each sample, from one thread per subscriber, which enters `turn` before.
 
-        A thread hands on what has come meanwhile in the same turn, `MOST_IN_A_TURN` samples at the most.
+        A thread hands on what has come meanwhile in the same turn, `MOST_IN_A_TURN` samples at the most. Once it has
+        handed on all samples of a topic, it calls the topic's pause, if there is one.
         """
-        for subscriber in self._subscribers:
+        for topic, subscriber in zip(self._topics, self._subscribers, strict=True):
             name = f"{self._sensor} inbox"
-            given = (subscriber, receive, turn)
+            given = (subscriber, receive, turn, pauses.get(topic, lambda: None))
             thread = threading.Thread(target=self._drain, args=given, name=name, daemon=True)
             thread.start()
             self._threads.append(thread)
@@ -108,13 +115,18 @@ class Inbox:
         return all(thread.is_alive() for thread in self._threads)
 
     def _drain(
-        self, subscriber: Subscriber, receive: Callable[[zenoh.Sample], None], turn: AbstractContextManager[object]
+        self,
+        subscriber: Subscriber,
+        receive: Callable[[zenoh.Sample], None],
+        turn: AbstractContextManager[object],
+        pause: Callable[[], object],
     ) -> None:
         for first in subscriber:
             sample: zenoh.Sample | None = first
             while sample is not None:
                 with turn:
                     sample = self._hand_on(sample, subscriber, receive)
+            pause()
 
     def _hand_on(
         self, first: zenoh.Sample, subscriber: Subscriber, receive: Callable[[zenoh.Sample], None]

@@ -4,6 +4,7 @@ import threading
 import time
 from abc import abstractmethod
 from collections import OrderedDict
+from collections.abc import Callable, Mapping
 
 import zenoh
 
@@ -11,7 +12,7 @@ from actum import keys
 from actum.bridge import Bridge
 from actum.codec import DecodeError, decode, origin_of
 from actum.messages import Action, Event, Message
-from actum.node import TICK_NS, Node, OnDemand, Remembering, Tick
+from actum.node import TICK_NS, Node, OnDemand, Patient, Remembering, Tick
 from actum.runtime.inbox import Inbox, Reach
 from actum.runtime.outbox import Outbox
 from actum.runtime.resuming import Resumption
@@ -22,6 +23,9 @@ from actum.settings import ServiceSettings
 LONGEST_TICK_NS = 2 * TICK_NS
 """Most that time goes on from one tick to the next (ns): a process that was stopped first reads what has come
 meanwhile, before it gives up waiting for it."""
+PAUSE_S = 0.08
+"""How long messages wait of a node that has time (s): two or three frames, and no multiple of a frame's time, so that
+they are not read whenever another frame has just come."""
 REMEMBERED = 1024
 """Answers remembered: more than publishers keep for late subscribers on all keys together."""
 _TURNS = Turns()
@@ -46,7 +50,7 @@ class StepService(Service):
         """Handle messages and ticks until stopped, and before them the messages that the inbox is to reach back to."""
         self._meter.await_history()
         self._inbox = Inbox(session, self._inputs, self._settings.sensor, reach)
-        self._inbox.start(lambda sample: self._receive(sample, outbox, stop), self._lock)
+        self._inbox.start(lambda sample: self._receive(sample, outbox, stop), self._lock, self._pauses())
         tick_ns, before_ns = 0, time.monotonic_ns()
         try:
             while not stop.wait(TICK_NS / 1e9):
@@ -79,6 +83,10 @@ class StepService(Service):
         except Exception as error:
             self.end_at_bug(f"while handling a message on {key}", error, stop)
 
+    def _pauses(self) -> Mapping[keys.Topic, Callable[[], object]]:
+        """Return by topic what its thread calls before it waits for the next message."""
+        return {}
+
     @abstractmethod
     def _step(self, message: Message | Tick, outbox: Outbox) -> None:
         """Let the step handle one message or tick, and put its answers; the lock is held."""
@@ -97,6 +105,8 @@ class NodeService(StepService):
         super().__init__(node, settings)
         self._node = node
         self._resumption = resumption
+        self._patient = node if isinstance(node, Patient) else None
+        self._hurry = threading.Event()
         if isinstance(node, OnDemand):
             node.is_demanded = False
 
@@ -117,6 +127,10 @@ class NodeService(StepService):
         finally:
             self._resumption.close()
 
+    def _pauses(self) -> Mapping[keys.Topic, Callable[[], object]]:
+        topics = () if self._patient is None else self._patient.may_wait
+        return dict.fromkeys(topics, lambda: self._hurry.wait(PAUSE_S))
+
     def _store(self) -> None:
         if self._resumption is None:
             return
@@ -133,6 +147,8 @@ class NodeService(StepService):
         for output in self._node.handle(message):
             if self._resumption is None or self._resumption.admits(output):
                 outbox.put(output)
+        if self._patient is not None:
+            (self._hurry.clear if self._patient.has_time else self._hurry.set)()
 
 
 def _origin(sample: zenoh.Sample) -> str:
