@@ -30,13 +30,15 @@ from teaching import GOGGLINGS, WAVES, Teacher
 
 
 @pytest.fixture(scope="module")
-def taught(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    teacher = Teacher(tmp_path_factory.mktemp("taught"))
-    teacher.ask("create_set", set="kitchen")
-    for person in ("anna", "bert"):
-        teacher.teach("wave", WAVES, person)
-        teacher.teach("goggles", GOGGLINGS, person)
-    return teacher.folder
+def taught(made_once: Callable[[str, Callable[[Path], None]], Path]) -> Path:
+    def teach(folder: Path) -> None:
+        teacher = Teacher(folder)
+        teacher.ask("create_set", set="kitchen")
+        for person in ("anna", "bert"):
+            teacher.teach("wave", WAVES, person)
+            teacher.teach("goggles", GOGGLINGS, person)
+
+    return made_once("taught-two-actions", teach)
 
 
 Finish = Callable[[], dict[str, Any]]

@@ -24,7 +24,7 @@ from actum.installing import install_command
 from actum.messages import Truth
 from actum.recorder import Recorder
 from actum_command.scene_marks import mark_of
-from live import PATIENCE_S, Running, System, wait_until
+from live import PATIENCE_S, Running, System, started, wait_until
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator
 
@@ -251,13 +251,10 @@ def test_a_viewer_that_cannot_start_says_why(running: System, scene: Path) -> No
     assert "listens on port" in refused.stderr
 
 
-def test_without_its_extra_a_viewer_says_which_it_needs(running: System, scene: Path) -> None:
+def test_without_its_extra_a_viewer_says_which_it_needs(running: System, scene: Path, tmp_path: Path) -> None:
     without = "import sys; sys.modules['rerun'] = sys.modules['foxglove'] = None; sys.argv = ['actum', *sys.argv[1:]]; "
     program = without + "from actum_command.__main__ import main; main()"
     for command, extra in (("view", "view"), ("foxglove", "foxglove")):
-        asked = subprocess.run(
-            [sys.executable, "-c", program, command, str(scene)],
-            env=running.environment, capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        assert asked.returncode == 1
-        assert install_command(extra) in asked.stderr
+        asked = started(["-c", program, command, str(scene)], running.environment, tmp_path / command)
+        assert asked.process.wait(timeout=PATIENCE_S) == 1
+        assert install_command(extra) in asked.said()
