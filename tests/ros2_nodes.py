@@ -41,6 +41,14 @@ class RosNode:
         key = f"0/{topic}/{type_name.replace('/', '::', 1).replace('/', '::dds_::')}_/{types.type_hash(type_name)}"
         return [read(type_name, it.payload.to_bytes()) for it in self.samples if str(it.key_expr) == key]
 
+    def put(self, key: str, *payloads: bytes) -> None:
+        """Publish, once another session is known to listen: until then Zenoh drops what is put."""
+        publisher = self.session.declare_publisher(key, allowed_destination=zenoh.Locality.REMOTE)
+        wait_until(lambda: publisher.matching_status.matching, f"a subscriber to {key}")  # type: ignore[attr-defined]
+        for payload in payloads:
+            publisher.put(payload)
+        publisher.undeclare()
+
     def wait_for(self, topic: str, type_name: str, wanted: Callable[[Any], bool] = bool) -> Any:
         def found() -> bool:
             return any(map(wanted, self.read(topic, type_name)))

@@ -149,10 +149,9 @@ def test_marks_become_segments_and_what_is_none_is_counted(running: System, node
     with running.client() as client:
         segments = client.listen(keys.key(keys.SEGMENT, "kinect0"))
         statuses = client.listen(keys.key(keys.STATUS, "kinect0", "ros2_bridge"))
-        node.session.put(MARK, text("start!"))
-        node.session.put(MARK, b"\xff\x00garbage")
-        node.session.put(MARK, text('{"kind": "start", "segment_id": "a", "agent": 1}'))
-        node.session.put(MARK, text('{"kind": "end", "segment_id": "a", "stamp_ns": 5}'))
+        start = text('{"kind": "start", "segment_id": "a", "agent": 1}')
+        end = text('{"kind": "end", "segment_id": "a", "stamp_ns": 5}')
+        node.put(MARK, text("start!"), b"\xff\x00garbage", start, end)
         marks = collect(segments, Segment, lambda found: len(found) == 2)
         assert [(it.kind, it.segment_id, it.agent, it.stamp_ns) for it in marks] == [
             ("start", "a", 1, None), ("end", "a", None, 5)
@@ -184,7 +183,7 @@ def test_a_robots_own_router_is_joined_to_ours(running: System, bridge: Running)
         client.put(event("over two routers", "push"))
         node.wait_for("actum/kinect0/event_json", types.STRING)
         segments = client.listen(keys.key(keys.SEGMENT, "kinect0"))
-        node.session.put(MARK, text('{"kind": "start", "segment_id": "a"}'))
+        node.put(MARK, text('{"kind": "start", "segment_id": "a"}'))
         assert collect(segments, Segment, bool)[0].segment_id == "a"
     node.session.close()
     router.close()
