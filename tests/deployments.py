@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from actum.runtime import Client
-from actum.settings import ServiceSettings, host_and_port
+from actum.settings import ServiceSettings
 from actum_command.processes import simulated_objects
 from actum_deployer.deployment import Deployment
 from actum_deployer.hosts import hosts_of
 from actum_deployer.roles import PEOPLES, identity
 from actum_deployer.writing import write_deployment
-from live import PATIENCE_S, Running, free_endpoint, started, wait_until
+from live import PATIENCE_S, Running, free_port, started, wait_until
 
 PEOPLE = {role.name for role in PEOPLES}
 MODULES = {"scene_simulator": "sensor_gateway"}
@@ -103,12 +103,6 @@ class Deployed:
                 running.process.terminate()
         for running in self.running:
             running.process.wait(timeout=PATIENCE_S)
-
-
-def free_port() -> int:
-    address = host_and_port(free_endpoint())
-    assert address is not None
-    return address[1]
 
 
 def described(sensors: Sequence[str] = ("kinect0",), **options: Any) -> Deployment:

@@ -49,6 +49,11 @@ def free_endpoint() -> str:
             return f"tcp/127.0.0.1:{port}"
 
 
+def free_port() -> int:
+    """The port of a free endpoint. No other test takes the next port either, unless this one asks for it."""
+    return int(free_endpoint().rpartition(":")[2])
+
+
 def wait_until(condition: Callable[[], bool], what: str, patience_s: float = PATIENCE_S) -> None:
     """Wait on a condition; fail naming it."""
     deadline_s = time.monotonic() + patience_s

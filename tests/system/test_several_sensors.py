@@ -12,7 +12,7 @@ from actum.node import Counters
 from actum.runtime import Client
 from actum.runtime.serving import TAKEN
 from actum_command.processes import SERVICES
-from live import FEW_IMAGES_HZ, PATIENCE_S, System, collect, described, wait_until
+from live import FEW_IMAGES_HZ, PATIENCE_S, System, collect, described, free_port, wait_until
 from people import reaches
 from recognisers import tiny_model
 from som_classifier.model_loading import WatchedModel, load_model
@@ -69,7 +69,7 @@ def test_a_sensor_that_another_serves_is_refused_and_a_successor_takes_over_its_
 
 def test_up_recognises_what_is_done_before_each_sensor_with_one_process_of_each_service(running: System) -> None:
     running.variables["ACTUM_IMAGE_HZ"] = FEW_IMAGES_HZ
-    up = running.start("actum_command", "up", "--sensors", ",".join(SENSORS))
+    up = running.start("actum_command", "up", "--sensors", ",".join(SENSORS), "--page-port", str(free_port()))
     with running.client("left") as left, running.client("right") as right:
         served: list[dict[str, set[str]]] = []
         for client in (left, right):

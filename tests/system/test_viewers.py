@@ -24,7 +24,7 @@ from actum.installing import install_command
 from actum.messages import Truth
 from actum.recorder import Recorder
 from actum_command.scene_marks import mark_of
-from live import PATIENCE_S, Running, System, started, wait_until
+from live import PATIENCE_S, Running, System, free_port, started, wait_until
 from scene_simulator.programme import balanced_programme
 from scene_simulator.simulator import Simulator
 
@@ -39,13 +39,6 @@ MESSAGE = struct.Struct("<BIQ")
 """The head of a message: 1, the subscription, and the log time (ns)."""
 SCENE = ("--seed", "1", "--image-hz", "15")
 START_NS = 1_700_000_000_000_000_000
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port: int = probe.getsockname()[1]
-        return port
 
 
 def start_scene(running: System) -> None:
