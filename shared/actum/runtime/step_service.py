@@ -147,8 +147,10 @@ class NodeService(StepService):
         for output in self._node.handle(message):
             if self._resumption is None or self._resumption.admits(output):
                 outbox.put(output)
-        if self._patient is not None:
-            (self._hurry.clear if self._patient.has_time else self._hurry.set)()
+        if self._patient is not None and self._patient.has_time:
+            self._hurry.clear()
+        else:
+            self._hurry.set()
 
 
 def _origin(sample: zenoh.Sample) -> str:
