@@ -69,7 +69,7 @@ class Inbox:
 
     def __init__(self, session: zenoh.Session, topics: Sequence[keys.Topic], sensor: str, reach: Reach) -> None:
         answered = [topic for topic in topics if topic in ANSWERED and reach.answered_s < reach.requested_s]
-        older = f"[..now(-{reach.answered_s:.3f}s)]"
+        older = f"_time=[..now(-{reach.answered_s:.3f}s)]"
         self._left_out = {
             _digest(sample)
             for topic in answered

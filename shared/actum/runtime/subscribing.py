@@ -10,6 +10,8 @@ from zenoh import ext, handlers
 
 ANSWER_S = 1.0
 """How long publishers may take to send what they keep (s)."""
+MOST_SOURCES = 1024
+"""Publishers whose newest number is remembered: the one that is silent for longest makes room. Gaps as well."""
 Source = tuple[str, int]
 """A publisher: its session's id and its number in this session."""
 
@@ -21,9 +23,9 @@ class Past(NamedTuple):
     most: int | None = None
 
     @property
-    def times(self) -> str:
-        """The times, as Zenoh writes a range."""
-        return f"[now(-{self.age_s:.3f}s)..]"
+    def selected(self) -> str:
+        """What is requested, as Zenoh writes it; each message's time is by the clock of who put it."""
+        return f"_time=[now(-{self.age_s:.3f}s)..]" + (f";_max={self.most}" if self.most else "")
 
 
 class Kept:
@@ -32,16 +34,17 @@ class Kept:
     Args:
         session: the connection.
         key_expr: of the messages.
-        times: when they were put, each by the clock of who put it; a time range as Zenoh writes it.
-        most: how many of each publisher, the newest ones; None for all.
+        selected: which of them, by time or number, as Zenoh writes it.
+        source: the publisher that is asked; None for each one.
     """
 
-    def __init__(self, session: zenoh.Session, key_expr: str, times: str, most: int | None = None) -> None:
+    def __init__(self, session: zenoh.Session, key_expr: str, selected: str, source: Source | None = None) -> None:
         self._replies: list[zenoh.Reply] = []
         self._is_complete = threading.Event()
+        asked = "**" if source is None else "*/{}/{}/**".format(*source)
         # a channel that is full would block this call where the publisher is of the same session
         session.get(
-            f"{key_expr}/@adv/**?_time={times}" + (f";_max={most}" if most else ""),
+            f"{key_expr}/@adv/{asked}?{selected}",
             handlers.Callback(self._replies.append, self._is_complete.set),
             target=zenoh.QueryTarget.ALL,
             consolidation=zenoh.ConsolidationMode.NONE,
@@ -67,6 +70,9 @@ class RecoveringSubscriber:
     them, with those put since its first request. It also returns the past of one publisher after that of another.
     Therefore the past is requested here, and then what Zenoh's subscriber has dropped. Zenoh's subscriber only adds the
     past of publishers that connect later.
+
+    It requests what gets lost, but not what gets lost while it awaits an answer: it then gives up on that. So this is
+    requested here, too. What its ring has no room for is not: the reader is too slow for it.
     """
 
     def __init__(self, session: zenoh.Session, key_expr: str, ring: int, past: Past | None) -> None:
@@ -76,9 +82,12 @@ class RecoveringSubscriber:
         self._session, self._past = session, past
         self._subscriber = ext.declare_advanced_subscriber(session, key_expr, channel, history=late, recovery=recovery)
         self._live = self._subscriber.handler  # which ends quietly where the subscriber is undeclared
-        self._kept = past and Kept(session, key_expr, past.times, past.most)
+        misses: handlers.RingChannel[ext.Miss] = handlers.RingChannel(MOST_SOURCES)
+        self._misses = self._subscriber.sample_miss_listener(misses)
+        self._kept = past and Kept(session, key_expr, past.selected)
         self._taken: deque[zenoh.Sample] = deque()
-        self._newest: dict[Source | None, int] = {}
+        self._newest: dict[Source, int] = {}
+        self._gaps: list[Source] = []
         self._is_undeclared = False
 
     def __iter__(self) -> Iterator[zenoh.Sample]:
@@ -114,29 +123,38 @@ class RecoveringSubscriber:
         """
         if self._kept is not None:
             self._taken.extend(self._kept.samples())
-            for source, number in map(_numbered, self._taken):
-                if source is not None:
-                    self._newest[source] = max(number, self._newest.get(source, 0))
+            for source, number in filter(None, map(_numbered, self._taken)):
+                self._newest[source] = max(number, self._newest.get(source, 0))
+            self._gaps.extend(self._newest)
             self._kept = None
         return self._taken.popleft() if self._taken and not self._is_undeclared else None
 
     def _take(self, sample: zenoh.Sample) -> None:
-        """Take a sample of Zenoh's subscriber unless it is of the past, behind those that were dropped before it."""
-        source, number = _numbered(sample) if self._newest else (None, 0)
-        newest = self._newest.get(source, number - 1)
-        if number > newest:  # a publisher's numbers rise
-            self._newest.pop(source, None)
-            self._taken.extend(self._dropped(sample, newest) if number > newest + 1 else ())
+        """Take a sample of Zenoh's subscriber unless it is of the past, behind those that it left out before it."""
+        if (numbered := _numbered(sample)) is None:
             self._taken.append(sample)
+            return
+        source, number = numbered
+        newest = self._newest.pop(source, number - 1)
+        if number > newest:  # a publisher's numbers rise
+            if number > newest + 1 and self._has_gap(source):
+                left_out = f"_sn={newest + 1}..{number - 1}"
+                self._kept = kept = Kept(self._session, str(sample.key_expr), left_out, source)
+                self._taken.extend(kept.samples())
+                self._kept = None
+            self._taken.append(sample)
+        self._newest[source] = max(number, newest)
+        if len(self._newest) > MOST_SOURCES:
+            del self._newest[next(iter(self._newest))]
 
-    def _dropped(self, following: zenoh.Sample, newest: int) -> list[zenoh.Sample]:
-        """Request the samples that a publisher put between the newest of the past and a following one."""
-        assert self._past is not None
-        source, number = _numbered(following)
-        self._kept = kept = Kept(self._session, str(following.key_expr), self._past.times)
-        samples = [(sample, *_numbered(sample)) for sample in kept.samples()]
-        self._kept = None
-        return [sample for sample, of, its in samples if of == source and newest < its < number]
+    def _has_gap(self, source: Source) -> bool:
+        """Tell whether it was Zenoh's subscriber that left out messages of a publisher, and not its ring."""
+        while (miss := self._misses.try_recv()) is not None:
+            self._gaps.append(_source(miss.source))
+        if source not in self._gaps:
+            return False
+        self._gaps.remove(source)
+        return True
 
 
 Subscriber = (
@@ -151,11 +169,14 @@ def subscribe(session: zenoh.Session, key_expr: str, ring: int) -> Subscriber:
     return session.declare_subscriber(key_expr, handlers.RingChannel(ring))
 
 
-def _numbered(sample: zenoh.Sample) -> tuple[Source | None, int]:
-    """Return the publisher of a sample, and the sample's number there; None and 0 where it has none."""
-    if (info := sample.source_info) is None:
-        return None, 0
-    return (str(info.source_id.zid), info.source_id.eid), info.source_sn
+def _numbered(sample: zenoh.Sample) -> tuple[Source, int] | None:
+    """Return the publisher of a sample, and the sample's number there; None where it has none."""
+    info = sample.source_info
+    return None if info is None else (_source(info.source_id), info.source_sn)
+
+
+def _source(of: zenoh.EntityGlobalId) -> Source:
+    return str(of.zid), of.eid
 
 
 def _put_at(sample: zenoh.Sample) -> float:
