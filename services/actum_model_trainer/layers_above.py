@@ -24,7 +24,7 @@ from actum_model_trainer.verifier_training import trained_verifier
 from som_classifier.convolutions import SecondOpinion
 from som_classifier.first_layer import FirstMaps
 from som_classifier.presets import ConvolutionPreset, PyramidPreset
-from som_classifier.pyramid_metadata import PyramidMetadata
+from som_classifier.pyramid_metadata import CONTRASTS, PyramidMetadata
 from som_classifier.pyramid_model import PyramidModel
 from som_classifier.stage_discriminants import StageDiscriminants
 from som_classifier.verifier import Verifier
@@ -156,9 +156,7 @@ def _layer_parameters(
 ) -> dict[str, Any]:
     """Return the metadata that the layers need beside their weights."""
     return {
-        "posture_contrast": first.contrasts["postures"],
-        "velocity_contrast": first.contrasts["velocities"],
-        "arm_contrast": first.contrasts["arms"],
+        **{field: first.contrasts[name] for name, field in CONTRASTS.items()},
         "arm_shares": list(first.arm_shares),
         "levels": list(preset.levels),
         "overlap": preset.overlap,

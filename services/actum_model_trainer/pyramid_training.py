@@ -1,6 +1,6 @@
 """Training of the default recogniser: the first maps, and the layers above them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
 
@@ -19,7 +19,7 @@ from actum_model_trainer.progress import Progress
 from actum_model_trainer.provenance import KeptError
 from actum_model_trainer.samples import LabelledStream, SegmentSample
 from actum_model_trainer.side_by_side import side_by_side
-from som_classifier.first_layer import MAP_INPUTS, FirstMaps, frame_inputs
+from som_classifier.first_layer import MAP_INPUTS, FirstMaps, Inputs, frame_inputs
 from som_classifier.model import NOTHING_KEPT, Arrays
 from som_classifier.presets import PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
@@ -92,12 +92,12 @@ def _some(taught: Taught) -> list[Sequence[Variant]]:
 def _first_maps(
     augmented: Sequence[Sequence[Variant]], preset: PyramidPreset, rng: np.random.Generator, progress: Progress
 ) -> FirstMaps:
-    drawn = {name: _drawn(augmented, inputs_of, rng) for name, inputs_of in MAP_INPUTS.items()}
+    drawn = {name: _drawn(augmented, inputs, rng) for name, inputs in MAP_INPUTS.items()}
     numbers = np.unique(np.concatenate(list(drawn.values())))
     frames = _frames(list(chain(*augmented)), numbers)
     rows = {
-        name: _training_rows(inputs_of(frames[np.searchsorted(numbers, drawn[name])]))
-        for name, inputs_of in MAP_INPUTS.items()
+        name: _training_rows(inputs.of(frames[np.searchsorted(numbers, drawn[name])]))
+        for name, inputs in MAP_INPUTS.items()
     }
 
     def trained(name: str) -> tuple[Som, float]:
@@ -110,14 +110,12 @@ def _first_maps(
     return FirstMaps(maps, contrasts, preset.arm_shares)
 
 
-def _drawn(
-    augmented: Sequence[Sequence[Variant]], inputs_of: Callable[[Floats], Floats], rng: np.random.Generator
-) -> Indices:
+def _drawn(augmented: Sequence[Sequence[Variant]], inputs: Inputs, rng: np.random.Generator) -> Indices:
     """Return the numbers of at most `MAX_ROWS` frames of all variants, drawn evenly of those with inputs of a map.
 
     A variant lacks what is missing in the sample as measured.
     """
-    seen = [~np.isnan(inputs_of(frame_inputs(*of_sample[0].measured))).all(axis=1) for of_sample in augmented]
+    seen = [~np.isnan(inputs.of(frame_inputs(*of_sample[0].measured))).all(axis=1) for of_sample in augmented]
     known = np.flatnonzero(np.concatenate([np.tile(own, len(of)) for own, of in zip(seen, augmented, strict=True)]))
     return known if len(known) <= MAX_ROWS else known[rng.choice(len(known), MAX_ROWS, replace=False)]
 

@@ -1,6 +1,6 @@
 """The first layer of the default recogniser: maps of postures, velocities and arms, each with a soft activity."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import ModuleType
@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from actum.arrays import Floats, has_unknown
+from actum.arrays import Floats, Indices, has_unknown
 from actum.core import steps
 from actum.skeletons import INDEX, JOINTS
 from actum.som import Som, Together
@@ -30,7 +30,6 @@ _ARM_COLUMNS = np.concatenate([_ARM, _ARM + _SIZE])
 """Columns of the right elbow and hand in a row of `frame_inputs`, positions and then velocities: (12,)."""
 _SHOULDER_COLUMNS = np.concatenate([_SHOULDER, _SHOULDER + _SIZE])
 """The right shoulder's columns, from which those of elbow and hand are measured: (12,)."""
-_WEIGHTS = np.repeat([1.0, VELOCITY_WEIGHT], len(_ARM))
 _MIRROR = np.concatenate([(3 * OPPOSITE[:, None] + np.arange(3)).ravel() + start for start in (0, _SIZE)])
 _SIGNS = np.tile(ACROSS, 2 * len(JOINTS))
 
@@ -46,16 +45,6 @@ def mirrored_inputs(rows: Floats) -> Floats:
     return inputs
 
 
-def arm_inputs(rows: Floats) -> Floats:
-    """Return positions and velocities of right elbow and hand relative to the shoulder, shape (n, 12).
-
-    Args:
-        rows: (n, 90), `frame_inputs`; of the mirror image for the left arm.
-    """
-    inputs: Floats = (rows[:, _ARM_COLUMNS] - rows[:, _SHOULDER_COLUMNS]) * _WEIGHTS
-    return inputs
-
-
 class Channel(NamedTuple):
     """A block of a frame's activity: the name of the map that answers, and whether it is shown the mirror image."""
 
@@ -63,31 +52,51 @@ class Channel(NamedTuple):
     mirrored: bool = False
 
 
-MAP_INPUTS: Mapping[str, Callable[[Floats], Floats]] = {
-    "postures": lambda rows: rows[:, :_SIZE],
-    "velocities": lambda rows: rows[:, _SIZE:],
-    "arms": arm_inputs,
+class Inputs:
+    """What a map is shown: columns of `frame_inputs`, or their differences from others, times factors.
+
+    The compiled steps compute it from the same columns and factors.
+
+    Args:
+        columns: the columns, (dim,).
+        less: the columns that are subtracted from them, (dim,); None where none are.
+        factors: what the differences are multiplied by, (dim,); 1 where nothing is subtracted.
+    """
+
+    def __init__(self, columns: slice | Indices, less: Indices | None = None, factors: Floats | None = None) -> None:
+        self._columns, self._less = columns, less
+        self._factors = np.ones(1) if factors is None else factors
+        self.size = len(self.compiled[0])
+
+    def of(self, rows: Floats) -> Floats:
+        """Return the inputs (n, dim) for rows of `frame_inputs` (n, 90)."""
+        if self._less is None:
+            return rows[:, self._columns]
+        inputs: Floats = (rows[:, self._columns] - rows[:, self._less]) * self._factors
+        return inputs
+
+    @property
+    def compiled(self) -> tuple[Indices, Indices, Floats]:
+        """The columns, those that are subtracted, -1 where none is, and the factors, (dim,) each."""
+        columns = np.arange(2 * _SIZE)[self._columns]
+        less = np.full(len(columns), -1) if self._less is None else self._less
+        return columns, less, np.broadcast_to(self._factors, len(columns))
+
+
+MAP_INPUTS: Mapping[str, Inputs] = {
+    "postures": Inputs(slice(_SIZE)),
+    "velocities": Inputs(slice(_SIZE, 2 * _SIZE)),
+    "arms": Inputs(_ARM_COLUMNS, _SHOULDER_COLUMNS, np.repeat([1.0, VELOCITY_WEIGHT], len(_ARM))),
 }
-"""The maps by name, in the order in which they are trained: what each is shown (n, dim) of `frame_inputs` (n, 90)."""
-INPUT_SIZES = {name: inputs_of(np.zeros((1, 2 * _SIZE))).shape[1] for name, inputs_of in MAP_INPUTS.items()}
-"""The dimension of each map, by its name."""
+"""The maps by name, in the order in which they are trained, and what each is shown of a frame.
+
+The arm map is shown positions and velocities of right elbow and hand relative to the shoulder."""
 MIRRORED = _MIRROR.astype(np.int32).tobytes(), _SIGNS.tobytes()
 """For each column of `frame_inputs` the one of which it is the mirror image, and the sign. Of this and all constants
 the compiled steps read the bytes: to take the buffer of an array costs more."""
-_MAP_INPUTS = (
-    np.concatenate([np.arange(2 * _SIZE), _ARM_COLUMNS]).astype(np.int32).tobytes(),
-    np.concatenate([np.full(2 * _SIZE, -1), _SHOULDER_COLUMNS]).astype(np.int32).tobytes(),
-    np.concatenate([np.ones(2 * _SIZE), _WEIGHTS]).tobytes(),
-)
-"""The inputs of all maps: a column of `frame_inputs`, less another one where there is one (-1 else), times a factor."""
 ACTING_ARM, OTHER_ARM = Channel("arms"), Channel("arms", mirrored=True)
 CHANNELS = (Channel("postures"), Channel("velocities"), ACTING_ARM, OTHER_ARM)
-"""The blocks of a frame's activity, in this order; the arm map answers for both arms."""
-_CHANNEL_MAPS = tuple(
-    np.array(each, np.int32).tobytes()
-    for each in zip(*[(list(MAP_INPUTS).index(name), mirrored) for name, mirrored in CHANNELS], strict=True)
-)
-"""The number of each channel's map, and whether it is shown the mirror image."""
+"""The blocks of a frame's activity, in this order, that of postures first; the arm map answers for both arms."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +135,7 @@ class FirstMaps:
         """
         rows = frame_inputs(postures, velocities)
         sides = rows, mirrored_inputs(rows)
-        blocks = [_excess2s(self.maps[name], MAP_INPUTS[name](sides[mirrored])) for name, mirrored in CHANNELS]
+        blocks = [_excess2s(self.maps[name], MAP_INPUTS[name].of(sides[mirrored])) for name, mirrored in CHANNELS]
         return self._normalised(np.concatenate(blocks, axis=1))
 
     def running_sums(self, postures: Floats, velocities: Floats) -> Sums:
@@ -143,7 +152,7 @@ class FirstMaps:
         sums[0] = 0
         frames = (np.ascontiguousarray(each, np.float64) for each in (postures, velocities))
         shares = self.shares.tobytes()
-        steps.added_frames(*frames, *MIRRORED, *_MAP_INPUTS, *self._compiled, shares, SCALE, sums)
+        steps.added_frames(*frames, *MIRRORED, *self._compiled, shares, SCALE, sums)
         return sums
 
     def winners(self, postures: Floats) -> NDArray[np.intp]:
@@ -184,7 +193,7 @@ class FirstMaps:
         if has_unknown(row):
             excess2s = self._partly_known(rows)
         else:
-            excess2s = self._together.excess2s(np.concatenate([each(rows) for each in MAP_INPUTS.values()], axis=1))
+            excess2s = self._together.excess2s(np.concatenate([each.of(rows) for each in MAP_INPUTS.values()], axis=1))
         of_map = dict(zip(MAP_INPUTS, excess2s.swapaxes(0, 1), strict=True))
         blocks = [of_map[name][::-1] if mirrored else of_map[name] for name, mirrored in CHANNELS]
         return self._normalised(np.concatenate(blocks, axis=1))
@@ -198,12 +207,12 @@ class FirstMaps:
             velocity: (15, 3), contiguous.
         """
         activities = np.empty((2, self.units), np.float32)
-        steps.exponents(posture, velocity, *MIRRORED, *_MAP_INPUTS, *self._compiled, activities)
+        steps.exponents(posture, velocity, *MIRRORED, *self._compiled, activities)
         return np.exp(activities, out=activities)
 
     def _partly_known(self, rows: Floats) -> Floats:
         """Return d² − d²_min of each map for rows (2, 90) with missing components, shape (2, maps, units)."""
-        inputs = [(self.maps[name], inputs_of(rows)) for name, inputs_of in MAP_INPUTS.items()]
+        inputs = [(self.maps[name], each.of(rows)) for name, each in MAP_INPUTS.items()]
         return np.array([[_excess2(som, map_rows[side]) for som, map_rows in inputs] for side in (0, 1)])
 
     def _normalised(self, excess2s: Floats) -> Floats:
@@ -224,18 +233,23 @@ class FirstMaps:
 
     @cached_property
     def _compiled(self) -> tuple[bytes, ...]:
-        """What the compiled step reads of the maps.
+        """What the compiled steps read of the maps, as bytes.
 
-        Of each map the dimension, the centre, the slopes in blocks of units, and the terms that are added to products;
-        of each channel its map, its side and the slope of its activity.
+        Of each map its inputs, their number, the centre, the slopes in blocks of units, and the terms that are added to
+        products; of each channel its map, its side and the slope of its activity.
         """
         lookups = [self.maps[name].lookup for name in MAP_INPUTS]
-        dims = np.array([lookup.dim for lookup in lookups], np.int32).tobytes()
+        columns, less, factors = map(np.concatenate, zip(*[each.compiled for each in MAP_INPUTS.values()], strict=True))
+        dims = np.array([lookup.dim for lookup in lookups])
+        of_channel = np.array([(list(MAP_INPUTS).index(name), mirrored) for name, mirrored in CHANNELS])
         centres, half_norms2 = (
             b"".join(getattr(lookup, name).tobytes() for lookup in lookups) for name in ("centre", "half_norms2")
         )
         slopes = b"".join(_in_blocks(lookup.slopes).tobytes() for lookup in lookups)
-        return dims, centres, slopes, half_norms2, *_CHANNEL_MAPS, self._slopes.tobytes()
+        columns, less, dims, maps, sides = (
+            each.astype(np.int32).tobytes() for each in (columns, less, dims, *of_channel.T)
+        )
+        return columns, less, factors.tobytes(), dims, centres, slopes, half_norms2, maps, sides, self._slopes.tobytes()
 
     @cached_property
     def posture_weights(self) -> bytes:

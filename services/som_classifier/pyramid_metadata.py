@@ -10,6 +10,9 @@ from som_classifier.model import ModelMetadata
 from som_classifier.spotting.spotted import Finite
 from som_classifier.spotting.spotting_model import Positive, PyramidSpottingMetadata
 
+CONTRASTS = {"postures": "posture_contrast", "velocities": "velocity_contrast", "arms": "arm_contrast"}
+"""The field of each map's contrast, by the name of the map in the first layer."""
+
 
 class PyramidMetadata(ModelMetadata):
     """What a file of the default recogniser holds beside the weights; field names are keys of the stored JSON.
@@ -69,7 +72,7 @@ class PyramidMetadata(ModelMetadata):
     @property
     def contrasts(self) -> dict[str, float]:
         """The contrast of each map of the first layer, by the map's name."""
-        return {"postures": self.posture_contrast, "velocities": self.velocity_contrast, "arms": self.arm_contrast}
+        return {name: getattr(self, field) for name, field in CONTRASTS.items()}
 
     def problem(self) -> str | None:
         """Return the first inconsistency within it, None where there is none."""

@@ -14,7 +14,7 @@ from actum.node import SECOND_NS
 from actum.som import Som
 from som_classifier.body_movement import BodyMovement, Evidence, movements
 from som_classifier.convolutions import COORDINATES, FILTERS, Convolutions, SecondOpinion, resampled
-from som_classifier.first_layer import CHANNELS, INPUT_SIZES, MAP_INPUTS, Channel, FirstMaps
+from som_classifier.first_layer import CHANNELS, MAP_INPUTS, Channel, FirstMaps
 from som_classifier.frame_activity import (
     FrameActivity,
     FrameEncoder,
@@ -271,7 +271,10 @@ class PyramidModel(Model):
                 {len(som.weights) for som in first.maps.values()},
                 {len(first.postures.weights)},
             ),
-            **{f"map of {name}": (first.maps[name].weights.shape[1:], (INPUT_SIZES[name],)) for name in MAP_INPUTS},
+            **{
+                f"map of {name}": (first.maps[name].weights.shape[1:], (inputs.size,))
+                for name, inputs in MAP_INPUTS.items()
+            },
             "discriminant axes": (self.stages.axes.shape, (stages, self.pyramid.cells * first.units, actions)),
             "offsets of them": (self.stages.offsets.shape, (stages, actions)),
             "convolved coordinates": (self.opinion.convolutions.coordinates.shape, (FILTERS, COORDINATES)),

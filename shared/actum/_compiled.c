@@ -26,9 +26,9 @@
 #endif
 #define INLINE static inline __attribute__((always_inline))
 
-enum { SIDES = 2, CHANNELS = 4, JOINTS = 15, COORDINATES = 45, PARTS = 5, LIMBS = 4, MOMENTS = 8, MOST_INSTANTS = 64, LANES = 8, BLOCK = 32,
+enum { SIDES = 2, JOINTS = 15, COORDINATES = 45, PARTS = 5, LIMBS = 4, MOMENTS = 8, MOST_INSTANTS = 64, LANES = 8, BLOCK = 32,
        MOST_SIGNED = 4096,
-       MOST_INPUTS = 3 * COORDINATES, TOTALS = PARTS + LIMBS * MOMENTS + 3, BODY = 4 * COORDINATES + 16 };
+       TOTALS = PARTS + LIMBS * MOMENTS + 3, BODY = 4 * COORDINATES + 16 };
 
 /* Release the buffers that were taken, and return None, or NULL where an error is set. */
 static PyObject *released(Py_buffer *buffers, int count)
@@ -351,7 +351,7 @@ PAIRWISE_SUM(pairwise_sum_of_rows, double, COORDINATES)
 /* Write what the maps are shown of a frame and of its mirror image, relative to their centres. */
 static void map_inputs(const double *posture, const double *velocity, const int32_t *mirror, const double *signs,
                        const int32_t *minuend, const int32_t *subtrahend, const double *weights, const float *centre,
-                       float (*out)[MOST_INPUTS], Py_ssize_t inputs)
+                       float *out, Py_ssize_t inputs)
 {
     double row[SIDES][2 * COORDINATES];
     memcpy(row[0], posture, sizeof row[0] / 2);
@@ -363,7 +363,7 @@ static void map_inputs(const double *posture, const double *velocity, const int3
             double value = row[side][minuend[i]];
             if (subtrahend[i] >= 0)
                 value = (value - row[side][subtrahend[i]]) * weights[i];
-            out[side][i] = (float)(value - (double)centre[i]);
+            out[side * inputs + i] = (float)(value - (double)centre[i]);
         }
 }
 
@@ -442,22 +442,24 @@ static PyObject *exponents(PyObject *module, PyObject *args)
         return NULL;
     const int32_t *dims = b[7].buf, *maps = b[11].buf, *sides = b[12].buf;
     const float *slopes = b[9].buf, *half_norms2 = b[10].buf, *contrasts = b[13].buf;
-    float *out = b[14].buf, inputs[SIDES][MOST_INPUTS];
-    Py_ssize_t units = b[14].len / (Py_ssize_t)sizeof(float) / SIDES / CHANNELS, count = b[8].len / (Py_ssize_t)sizeof(float);
+    float *out = b[14].buf;
+    Py_ssize_t channels = b[11].len / (Py_ssize_t)sizeof(int32_t), count = b[8].len / (Py_ssize_t)sizeof(float);
+    Py_ssize_t units = channels ? b[14].len / (Py_ssize_t)sizeof(float) / SIDES / channels : 0;
     Py_ssize_t width = b[10].len / (Py_ssize_t)sizeof(float), input = 0, padded = (units + BLOCK - 1) / BLOCK * BLOCK;
-    float *scores = PyMem_Malloc((SIDES * width + units) * sizeof(float)), *sums = scores + SIDES * width;
+    float *scores = PyMem_Malloc((SIDES * (width + count) + units) * sizeof(float)), *sums = scores + SIDES * width;
+    float *inputs = sums + units;
     if (scores == NULL)
         PyErr_NoMemory();
-    else if (units < 1 || count > MOST_INPUTS || b[9].len < count * padded * (Py_ssize_t)sizeof(float))
-        PyErr_SetString(PyExc_ValueError, "more inputs than the compiled step has room for, or than there are weights");
+    else if (units < 1 || b[9].len < count * padded * (Py_ssize_t)sizeof(float))
+        PyErr_SetString(PyExc_ValueError, "no channels, or more inputs than there are weights");
     else
         map_inputs(b[0].buf, b[1].buf, b[2].buf, b[3].buf, b[4].buf, b[5].buf, b[6].buf, b[8].buf, inputs, count);
     for (Py_ssize_t map = 0; map < width / units && !PyErr_Occurred(); input += dims[map++])
-        (HAS_FUSED ? fused_products : rounded_products)(inputs[0] + input, inputs[1] + input, slopes + input * padded,
+        (HAS_FUSED ? fused_products : rounded_products)(inputs + input, inputs + count + input, slopes + input * padded,
                                                         dims[map], units, scores + map * units,
                                                         scores + width + map * units);
-    for (int block = 0; block < SIDES * CHANNELS && !PyErr_Occurred(); block++) {
-        int channel = block % CHANNELS, side = block / CHANNELS ^ sides[channel];
+    for (Py_ssize_t block = 0; block < SIDES * channels && !PyErr_Occurred(); block++) {
+        Py_ssize_t channel = block % channels, side = block / channels ^ sides[channel];
         Py_ssize_t first = maps[channel] * units;
         add(scores + side * width + first, half_norms2 + first, sums, units);
         scaled_excess(sums, least_of(sums, units), contrasts[channel], out + block * units, units);
@@ -538,9 +540,10 @@ static PyObject *added(PyObject *module, PyObject *args)
     const float *activities = b[0].buf, *shares = b[1].buf;
     const double *posture = b[3].buf, *signs = b[5].buf;
     const int32_t *mirror = b[4].buf;
-    Py_ssize_t all = b[0].len / (Py_ssize_t)sizeof(float), units = all / SIDES / CHANNELS, rows = row < 0 ? 0 : row + 2;
+    Py_ssize_t channels = b[1].len / (Py_ssize_t)sizeof(float), all = b[0].len / (Py_ssize_t)sizeof(float);
+    Py_ssize_t units = channels ? all / SIDES / channels : 0, rows = row < 0 ? 0 : row + 2;
     const size_t bytes[10] = {
-        SIDES * CHANNELS * sizeof(float), CHANNELS * sizeof(float), PARTS * sizeof(double), sizeof image,
+        SIDES * channels * sizeof(float), sizeof(float), PARTS * sizeof(double), sizeof image,
         COORDINATES * sizeof(int32_t), sizeof image, units * COORDINATES * sizeof(float),
         LIMBS * (MOMENTS - 2) * sizeof(int32_t), rows * all * sizeof(uint32_t), rows * TOTALS * sizeof(int64_t)};
     if (row < 0)
@@ -549,12 +552,12 @@ static PyObject *added(PyObject *module, PyObject *args)
         return released(b, 10);
     uint32_t *before = (uint32_t *)b[8].buf + row * all, *after = before + all;
     int64_t *totals = (int64_t *)b[9].buf + (row + 1) * TOTALS;
-    for (int block = 0; block < SIDES * CHANNELS; block++) {
+    for (Py_ssize_t block = 0; block < SIDES * channels; block++) {
         const float *activity = activities + block * units;
-        float factor = shares[block % CHANNELS] / pairwise_sum(activity, units);
+        float factor = shares[block % channels] / pairwise_sum(activity, units);
         add_quantised(activity, factor, scale, before + block * units, after + block * units, units);
-        if (block % CHANNELS == 0)
-            winners[block / CHANNELS] = first_largest(activity, units);
+        if (block % channels == 0)
+            winners[block / channels] = first_largest(activity, units);
     }
     for (int i = 0; i < COORDINATES; i++)
         image[i] = posture[mirror[i]] * signs[i];
@@ -1094,7 +1097,7 @@ typedef struct {
     const int32_t *mirror, *minuend, *subtrahend, *dims, *maps, *sides;
     const double *signs, *weights;
     const float *centre, *slopes, *half_norms2, *contrasts, *shares;
-    Py_ssize_t inputs, units, padded;
+    Py_ssize_t inputs, units, padded, channels;
     float scale;
 } Layer;
 
@@ -1102,18 +1105,18 @@ typedef struct {
 static void add_frames(const Layer *layer, const double *postures, const double *velocities, int count, float *room,
                        uint32_t *sums)
 {
-    float inputs[2][SIDES][MOST_INPUTS], *activity = room + 2 * layer->units;
-    Py_ssize_t units = layer->units, width = CHANNELS * units;
+    float *activity = room + 2 * layer->units, *inputs = activity + layer->units;
+    Py_ssize_t units = layer->units, width = layer->channels * units, of_frame = SIDES * layer->inputs;
     for (int frame = 0; frame < 2; frame++)
         map_inputs(postures + frame % count * COORDINATES, velocities + frame % count * COORDINATES, layer->mirror, layer->signs,
-                   layer->minuend, layer->subtrahend, layer->weights, layer->centre, inputs[frame], layer->inputs);
-    for (int channel = 0; channel < CHANNELS; channel++) {
+                   layer->minuend, layer->subtrahend, layer->weights, layer->centre, inputs + frame * of_frame, layer->inputs);
+    for (Py_ssize_t channel = 0; channel < layer->channels; channel++) {
         int map = layer->maps[channel], side = layer->sides[channel];
         Py_ssize_t input = 0;
         for (int before = 0; before < map; before++)
             input += layer->dims[before];
-        (HAS_FUSED ? fused_products : rounded_products)(inputs[0][side] + input, inputs[1][side] + input,
-                                                        layer->slopes + input * layer->padded, layer->dims[map], units, room,
+        const float *shown = inputs + side * layer->inputs + input, *weights = layer->slopes + input * layer->padded;
+        (HAS_FUSED ? fused_products : rounded_products)(shown, shown + of_frame, weights, layer->dims[map], units, room,
                                                         room + units);
         for (int frame = 0; frame < count; frame++) {
             float *scores = room + frame * units;
@@ -1139,20 +1142,22 @@ static PyObject *added_frames(PyObject *module, PyObject *args)
         return NULL;
     const double *postures = b[0].buf, *velocities = b[1].buf;
     Py_ssize_t frames = b[0].len / (Py_ssize_t)sizeof(double) / COORDINATES, real = sizeof(float);
-    Py_ssize_t units = b[15].len / (Py_ssize_t)sizeof(uint32_t) / (frames + 1) / CHANNELS, padded = (units + BLOCK - 1) / BLOCK * BLOCK;
+    Py_ssize_t channels = b[11].len / (Py_ssize_t)sizeof(int32_t), inputs = b[8].len / real;
+    Py_ssize_t units = channels ? b[15].len / (Py_ssize_t)sizeof(uint32_t) / (frames + 1) / channels : 0;
+    Py_ssize_t padded = (units + BLOCK - 1) / BLOCK * BLOCK;
     Layer layer = {b[2].buf, b[4].buf, b[5].buf, b[7].buf, b[11].buf, b[12].buf, b[3].buf, b[6].buf, b[8].buf, b[9].buf,
-                   b[10].buf, b[13].buf, b[14].buf, b[8].len / real, units, padded, scale};
-    float *room = PyMem_Malloc(3 * units * sizeof *room + 1);
+                   b[10].buf, b[13].buf, b[14].buf, inputs, units, padded, channels, scale};
+    float *room = PyMem_Malloc((3 * units + 2 * SIDES * inputs) * sizeof *room + 1);
     if (room == NULL)
         PyErr_NoMemory();
-    else if (units < 1 || layer.inputs > MOST_INPUTS || b[1].len != b[0].len || b[9].len < layer.inputs * padded * real
-             || b[15].len != (frames + 1) * CHANNELS * units * (Py_ssize_t)sizeof(uint32_t))
-        PyErr_SetString(PyExc_ValueError, "more inputs than the compiled step has room for, or arrays of other lengths");
+    else if (units < 1 || b[1].len != b[0].len || b[9].len < inputs * padded * real
+             || b[15].len != (frames + 1) * channels * units * (Py_ssize_t)sizeof(uint32_t))
+        PyErr_SetString(PyExc_ValueError, "no channels, or arrays of other lengths");
     else {
         Py_BEGIN_ALLOW_THREADS
         for (Py_ssize_t first = 0; first < frames; first += 2)
             add_frames(&layer, postures + first * COORDINATES, velocities + first * COORDINATES, first + 1 < frames ? 2 : 1, room,
-                       (uint32_t *)b[15].buf + first * CHANNELS * units);
+                       (uint32_t *)b[15].buf + first * channels * units);
         Py_END_ALLOW_THREADS
     }
     PyMem_Free(room);

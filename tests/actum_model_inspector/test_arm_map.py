@@ -8,12 +8,12 @@ from actum.som import Som
 from actum_model_inspector.arm_map import arm_joints, arm_map, arm_steps_m
 from actum_model_inspector.stick_figures import HEIGHT_M, laid_out
 from recognisers import tiny_samples
-from som_classifier.first_layer import VELOCITY_WEIGHT, arm_inputs, frame_inputs
+from som_classifier.first_layer import MAP_INPUTS, VELOCITY_WEIGHT, frame_inputs
 from som_classifier.kinematics import LAG_TIME_CONSTANT_S
 
 SHOULDER, ELBOW, HAND = (INDEX[f"right_{name}"] for name in ("shoulder", "elbow", "hand"))
 POSTURES, VELOCITIES = tiny_samples()[0].postures, tiny_samples()[0].velocities
-UNITS = arm_inputs(frame_inputs(POSTURES, VELOCITIES))
+UNITS = MAP_INPUTS["arms"].of(frame_inputs(POSTURES, VELOCITIES))
 
 
 def test_an_arm_hangs_from_the_shoulder_as_it_did() -> None:

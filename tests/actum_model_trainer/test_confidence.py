@@ -25,7 +25,7 @@ from actum_model_trainer.upper_layers import UpperLayers, train_upper
 from performers import TINY
 from recognisers import tiny_samples
 from som_classifier.body_movement import LEAST_M, BodyMovement, log_movements
-from som_classifier.first_layer import INPUT_SIZES, FirstMaps
+from som_classifier.first_layer import MAP_INPUTS, FirstMaps
 from som_classifier.kinematics import averaged
 
 ACTIONS, EACH = 3, 30
@@ -76,7 +76,7 @@ def test_each_stage_has_its_own_inverse_temperature() -> None:
 
 def still_maps() -> FirstMaps:
     """A first layer of one unit in each map."""
-    maps = {name: Som(1, 1, np.zeros((1, size), np.float32)) for name, size in INPUT_SIZES.items()}
+    maps = {name: Som(1, 1, np.zeros((1, each.size), np.float32)) for name, each in MAP_INPUTS.items()}
     return FirstMaps(maps, dict.fromkeys(maps, 1.0), (0.4, 0.1))
 
 

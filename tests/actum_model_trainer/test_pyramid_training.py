@@ -17,7 +17,7 @@ from actum_model_trainer.samples import SegmentSample
 from actum_model_trainer.training import train
 from performers import TINY
 from recognisers import in_a_mirror
-from som_classifier.first_layer import arm_inputs, frame_inputs
+from som_classifier.first_layer import MAP_INPUTS, frame_inputs
 from som_classifier.presets import BodyVariation, PyramidPreset
 from som_classifier.pyramid_model import PyramidModel
 
@@ -168,7 +168,7 @@ def test_the_map_of_arms_learns_the_arm_that_acts(samples: list[SegmentSample]) 
     postures, velocities = (
         np.concatenate([getattr(sample, name) for sample in acting]) for name in ("postures", "velocities")
     )
-    arms = arm_inputs(frame_inputs(postures, velocities))
+    arms = MAP_INPUTS["arms"].of(frame_inputs(postures, velocities))
     distances2 = [np.square(model.first.maps["arms"].weights - row).sum(axis=1).min() for row in arms]
     assert model.metadata.arm_contrast == pytest.approx(0.5 * np.median(distances2), rel=1e-3)
     assert tuple(model.metadata.arm_shares) == model.first.arm_shares == PLAIN.arm_shares

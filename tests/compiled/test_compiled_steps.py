@@ -27,12 +27,15 @@ from actum.messages import Joint, Posture
 from actum.messages.base import Joints
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
+from actum.som import Som
 from people import FRAME_NS, STANDING, skeleton
 from pose_preprocessor.body import body_of, known_body
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
+from som_classifier import first_layer
 from som_classifier.body_movement import movements
 from som_classifier.convolutions import COORDINATES, FILTERS, INSTANTS, Convolutions, resampled
+from som_classifier.first_layer import FirstMaps
 from som_classifier.frames import Frame, frame_of
 from som_classifier.handedness import left_arm_acts, limb_moments, mirrored
 from som_classifier.kinematics import KinematicsFilter
@@ -45,6 +48,11 @@ pytestmark = pytest.mark.skipif(steps is None, reason="this installation found n
 R = TypeVar("R")
 ROUNDING_M = 1e-14
 """By how much positions may differ: some units in the last place of joints that are metres from the camera."""
+
+
+def of_joint(name: str) -> tuple[int, int]:
+    """The first column of a joint's position in a row of inputs, and the first of the next joint's."""
+    return 3 * INDEX[name], 3 * INDEX[name] + 3
 
 
 def both(work: Callable[[], R]) -> tuple[R, R]:
@@ -180,6 +188,26 @@ def test_many_frames_add_to_all_sums_what_each_does_alone(seed: int, frames: int
     steps_of_each = [np.diff(each.astype(np.int64), axis=0) for each in sums]
     assert np.abs(steps_of_each[0] - steps_of_each[1]).max(initial=0) <= 1
     assert not sums[0][0].any()
+
+
+def test_a_further_map_answers_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A map is added by what it is shown, and by its channels."""
+    knees = first_layer.Inputs(np.arange(*of_joint("right_knee")), np.arange(*of_joint("right_hip")), np.full(3, 2.0))
+    monkeypatch.setattr(first_layer, "MAP_INPUTS", {"knees": knees, **first_layer.MAP_INPUTS})
+    mirrored_too = first_layer.Channel("knees"), first_layer.Channel("knees", mirrored=True)
+    monkeypatch.setattr(first_layer, "CHANNELS", (*first_layer.CHANNELS, *mirrored_too))
+    before, rng = spotting_model().first, np.random.default_rng(0)
+    units = before.postures.rows, before.postures.cols
+    knee_map = Som(*units, rng.normal(0, 0.3, (units[0] * units[1], 3)).astype(np.float32))
+    first = FirstMaps({**before.maps, "knees": knee_map}, {**before.contrasts, "knees": 0.1}, before.arm_shares)
+    postures, velocities = rng.normal(0, 0.3, (2, 20, 15, 3))
+    alone = [first.frame_activities(*frame) for frame in zip(postures, velocities, strict=True)]
+    sums = first.running_sums(postures, velocities), running_sums(np.stack([as_seen for as_seen, _ in alone]))
+    steps_of_each = [np.diff(each.astype(np.int64), axis=0) for each in sums]
+    assert np.abs(steps_of_each[0] - steps_of_each[1]).max() <= 1
+    one = first.unnormalised_activities(steps, postures[0], velocities[0]).reshape(2, len(first.shares), -1)
+    one *= first.shares / one.sum(axis=2, keepdims=True)
+    np.testing.assert_allclose(one.reshape(2, -1), alone[0], atol=1e-6)
 
 
 def test_sums_of_frames_that_lack_a_joint_are_those_of_numpy() -> None:

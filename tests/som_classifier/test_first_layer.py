@@ -10,17 +10,11 @@ from hypothesis import strategies as st
 from actum.skeletons import INDEX
 from actum.som import Som
 from people import STANDING
-from som_classifier.first_layer import (
-    INPUT_SIZES,
-    SMALLEST_ERROR2,
-    VELOCITY_WEIGHT,
-    FirstMaps,
-    arm_inputs,
-    frame_inputs,
-)
+from som_classifier.first_layer import MAP_INPUTS, SMALLEST_ERROR2, VELOCITY_WEIGHT, FirstMaps, frame_inputs
 from som_classifier.handedness import mirrored
 
 SHARES = 0.4, 0.1
+ARMS = MAP_INPUTS["arms"]
 POSTURE = STANDING - STANDING[2]
 
 
@@ -30,7 +24,7 @@ def map_of(rows: int, cols: int, dim: int, seed: int = 0) -> Som:
 
 def first_maps(posture_contrast: float = 3.0, velocity_contrast: float = 2.0) -> FirstMaps:
     contrasts = {"postures": posture_contrast, "velocities": velocity_contrast, "arms": 1.0}
-    maps = {name: map_of(5, 4, size, seed) for seed, (name, size) in enumerate(INPUT_SIZES.items())}
+    maps = {name: map_of(5, 4, each.size, seed) for seed, (name, each) in enumerate(MAP_INPUTS.items())}
     return FirstMaps(maps, contrasts, SHARES)
 
 
@@ -81,7 +75,7 @@ def test_activity_by_hand() -> None:
     """
     maps, (postures, velocities) = first_maps(), inputs(1)
     right, left = (
-        arm_inputs(frame_inputs(*both)) for both in ((postures, velocities), (mirrored(postures), mirrored(velocities)))
+        ARMS.of(frame_inputs(*both)) for both in ((postures, velocities), (mirrored(postures), mirrored(velocities)))
     )
     expected = []
     for som, x, contrast, share in (
@@ -121,7 +115,7 @@ def test_what_a_missing_joint_would_have_said_does_not_matter(joint: int) -> Non
 def test_the_arm_is_seen_from_its_shoulder() -> None:
     """Where the body stands and how it moves on the whole says nothing about the arm."""
     postures, velocities = inputs(3)
-    arms = arm_inputs(frame_inputs(postures, velocities))
+    arms = ARMS.of(frame_inputs(postures, velocities))
     shoulder, elbow, hand = (INDEX[f"right_{name}"] for name in ("shoulder", "elbow", "hand"))
     expected = [
         speed * (vectors[:, joint] - vectors[:, shoulder])
@@ -130,7 +124,7 @@ def test_the_arm_is_seen_from_its_shoulder() -> None:
     ]
     np.testing.assert_allclose(arms, np.concatenate(expected, axis=1))
     elsewhere = frame_inputs(postures + np.array([1.0, 2.0, 3.0]), velocities - np.array([0.3, 0.2, 0.1]))
-    np.testing.assert_allclose(arm_inputs(elsewhere), arms)
+    np.testing.assert_allclose(ARMS.of(elsewhere), arms)
 
 
 def test_where_one_arm_is_hidden_its_map_says_nothing_of_it() -> None:
