@@ -1,7 +1,7 @@
 """Builds the sources of the cameras that the settings can name."""
 
 from collections.abc import Callable, Generator
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from sensor_gateway.devices.capture import Capture
 from sensor_gateway.devices.file_capture import FileCapture
 from sensor_gateway.devices.webcam import LiveCapture
 from sensor_gateway.optics import SAME_CAMERA, DepthOptics, Optics
-from sensor_gateway.people.landmarks import Nobody
+from sensor_gateway.people.landmarks import Estimator, Nobody
 from sensor_gateway.people.pose_estimator import PoseEstimator
 from sensor_gateway.perceiver import MarkersPerceiver, UsersPerceiver
 from sensor_gateway.settings import Settings
@@ -49,7 +49,7 @@ def optics_of(settings: Settings) -> Optics:
     return Optics(settings.field_of_view_deg, calibration, settings.person_height_m, settings.mirrored)
 
 
-def estimator_of(settings: Settings) -> PoseEstimator:
+def estimator_of(settings: Settings) -> AbstractContextManager[Estimator]:
     """Open the pose model.
 
     Raises:
@@ -173,7 +173,8 @@ def _depth_optics(settings: Settings) -> DepthOptics:
 
 def _check_pose_model(settings: Settings) -> None:
     """Open the pose model and close it, so that an unusable one stops the service at its start."""
-    estimator_of(settings).close()
+    with estimator_of(settings):
+        pass
 
 
 def _size_of(settings: Settings) -> tuple[int, int] | None:

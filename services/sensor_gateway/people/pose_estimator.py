@@ -101,10 +101,6 @@ class PoseEstimator:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Release the model; the estimator cannot be used afterwards."""
         self._one.close()
         if self._several is not None:
             self._several.close()
