@@ -17,7 +17,7 @@ from marker_tracker.settings import Settings as TrackerSettings
 from scene_simulator.parameters import load_parameters
 
 SERVICES = ("pose_preprocessor", "som_classifier", "marker_tracker", "action_fusion")
-"""The services behind the sensor, in the order of the stream."""
+"""The services behind the sensor, in the order of the stream: `actum up` and `actum demo` start them."""
 
 GATEWAY, SCENE = "sensor_gateway", "scene_simulator"
 """The services that are the source of a sensor: cameras and recordings, and the simulated scene."""

@@ -11,8 +11,8 @@ from actum.runtime import Client, RouterUnreachableError
 from actum.settings import ServiceSettings, SettingsError, host_and_port
 from actum_command.dealing import counted_on
 from actum_command.model_in_use import NO_MODEL, ModelInUse, lack_of_file
-from actum_command.processes import PAGE, SERVICES
-from actum_command.service_settings import DECLARED, TRAINER, Given, flag_of, service_of
+from actum_command.processes import GATEWAY, PAGE, SCENE
+from actum_command.service_settings import DECLARED, Given, flag_of, service_of
 from actum_command.simulated_model import SIMULATED_MODEL
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.settings import Settings as ClassifierSettings
@@ -28,19 +28,16 @@ FILES_ELSEWHERE = {
 }
 """The sources that play no file, each with how a file is named instead."""
 
-OWN_SOURCE = {"camera": "camera", "recording": "path", "realsense": "path", "openni2": "path"}
-"""The setting that names what a sensor shows, by source: several sensors have one each."""
-
 DEPTH_CAMERAS = (
     ". For depth cameras use --source none, and start a gateway for each sensor on a host of its own, because each "
     "gateway opens the first depth camera that it finds"
 )
-"""What to do with several depth cameras instead of their recordings."""
+"""What to do with several cameras that no setting tells apart instead of their recordings."""
 
 WITHOUT_CAMERA = ("simulator", "recording")
 """The sources that have no camera to choose."""
 
-SENSORS = {"none": None, "simulator": "scene_simulator"}
+SENSORS = {"none": None, "simulator": SCENE}
 """The service that puts the sensor's streams, by source, where it is not the sensor gateway."""
 
 LOCAL = "127.0.0.1"
@@ -76,10 +73,8 @@ def chosen_source(named: str | None, given: Given) -> str:
         raise SettingsError(f"--source {source} does not read --path: leave out --path. {remedy}")
     if "camera" in given and source in WITHOUT_CAMERA:
         raise SettingsError(f"--source {source} uses no camera: leave out --camera, or use --source camera")
-    sensor = SENSORS.get(source, "sensor_gateway")
-    behind = (*SERVICES, TRAINER, PAGE)
-    started = behind if sensor is None else (*behind, sensor)
-    of_started = {name for service in started for name in DECLARED[service].model_fields}
+    absent = {GATEWAY, SCENE} - {SENSORS.get(source, GATEWAY)}
+    of_started = {name for service in DECLARED.keys() - absent for name in DECLARED[service].model_fields}
     for name in (name for name in given if name not in of_started):
         flag, service = flag_of(name), service_of(name)
         raise SettingsError(
@@ -95,11 +90,11 @@ def refuse_shared_source(source: str, given: Given, settings: ServiceSettings) -
     Raises:
         SettingsError: there are more of them than sensors, or fewer.
     """
-    count, named = len(settings.of_each_sensor), given.get(OWN_SOURCE.get(source, ""), [])
-    if count == 1 or source not in OWN_SOURCE or not isinstance(named, list) or len(named) == count:
+    count, setting = len(settings.of_each_sensor), "camera" if source == "camera" else "path"
+    named = given.get(setting, [])
+    if count == 1 or source in SENSORS or not isinstance(named, list) or len(named) == count:
         return
-    flag = flag_of(OWN_SOURCE[source])
-    depth = "" if OWN_SOURCE[source] == "camera" or source == "recording" else DEPTH_CAMERAS
+    flag, depth = flag_of(setting), "" if source in ("camera", "recording") else DEPTH_CAMERAS
     raise SettingsError(
         f"--source {source} for {count} sensors needs {flag} {count} times, but {flag} is given {len(named)} times: "
         f"give {flag} once for each sensor, in the order of the sensors{depth}"

@@ -33,7 +33,7 @@ class Storing(Protocol):
         """Store what is still held back."""
 
 
-def store_all(listening: Listening, recorder: Storing, stop: threading.Event, deadline_s: float) -> None:
+def store_all(listening: Sequence[Listening], recorder: Storing, stop: threading.Event, deadline_s: float) -> None:
     """Store messages until stopped or until the deadline (monotonic clock), then those that were put before."""
     while not stop.is_set() and time.monotonic() < deadline_s:
         if not _store(listening, recorder):
@@ -44,16 +44,15 @@ def store_all(listening: Listening, recorder: Storing, stop: threading.Event, de
     recorder.close()
 
 
-def _store(listening: Listening, recorder: Storing) -> bool:
-    """Store one message if one has come; tell whether one had."""
-    received = listening.receive()
-    if received is None:
-        return False
-    if received.message is not None:
-        recorder.receive(received.message, steady_clock.now_ns())
-    elif received.error is not None:
-        recorder.reject(received.error)
-    return True
+def _store(listening: Sequence[Listening], recorder: Storing) -> bool:
+    """Store one message of each subscription that has one; tell whether any had."""
+    come = [received for each in listening if (received := each.receive()) is not None]
+    for received in come:
+        if received.message is not None:
+            recorder.receive(received.message, steady_clock.now_ns())
+        elif received.error is not None:
+            recorder.reject(received.error)
+    return bool(come)
 
 
 def put_all(client: Client, recordings: Sequence[Recording], speed: float, stop: threading.Event) -> int:

@@ -76,5 +76,5 @@ def description(settings: Settings) -> str:
             return f"file {camera} ({kind})"
         return f"{kind} {camera}"
     if settings.path is None:
-        return f"depth camera ({settings.source})"
+        return f"camera ({settings.source})"
     return f"{'folder' if settings.path.is_dir() else 'file'} {settings.path} ({settings.source})"

@@ -2,12 +2,17 @@
 
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import pytest
 
 from actum.installing import install_command
 from actum.runtime import needs_extra
 from actum.runtime.serving import INTERRUPTED, UNUSABLE
+from actum_command.service_settings import DECLARED
+
+PROJECT = Path(__file__).parents[2] / "pyproject.toml"
 
 WITHOUT = """
 import runpy, sys
@@ -38,6 +43,11 @@ def test_a_service_without_its_extra_says_which_it_needs(service: str, package: 
     ended = subprocess.run(run, capture_output=True, text=True, check=False)
     assert ended.returncode == UNUSABLE
     assert ended.stderr == f"{package} is not installed: run {install_command(extra)}\n"
+
+
+def test_each_service_can_be_installed_alone() -> None:
+    extras = tomllib.loads(PROJECT.read_text())["project"]["optional-dependencies"]
+    assert {service.replace("_", "-") for service in DECLARED} <= extras.keys()
 
 
 def test_a_part_that_is_missing_of_what_is_installed_is_a_bug_and_crashes() -> None:

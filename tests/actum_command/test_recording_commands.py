@@ -41,7 +41,7 @@ class Live:
 
     def __exit__(self, *_: object) -> None: ...
 
-    def listen(self, _pattern: str) -> "Live":
+    def listen_back(self, _pattern: str, _history_s: float) -> "Live":
         return self
 
     def wait_for_subscriber(self, _topic: keys.Topic, _wait_s: float) -> bool:

@@ -19,7 +19,7 @@ from sensor_gateway.sources import description
         ({"source": "camera", "camera": "http://lab:8080/v.mp4"}, "camera http://lab:8080/v.mp4"),
         ({"source": "camera", "camera": "rtsp://me:secret@lab/a?token=secret"}, "camera rtsp://lab/a"),
         ({"source": "marker-camera", "camera": 1}, "marker camera 1"),
-        ({"source": "realsense"}, "depth camera (realsense)"),
+        ({"source": "realsense"}, "camera (realsense)"),
         ({"source": "openni2", "path": "walk.oni"}, "file walk.oni (openni2)"),
         ({"source": "recording", "path": "a.mcap"}, "file a.mcap (recording)"),
         ({"source": "recording", "path": "."}, "folder . (recording)"),

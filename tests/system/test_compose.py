@@ -14,14 +14,14 @@ import pytest
 import zenoh
 
 from actum.health import FRESH_S, is_healthy
-from actum_command.processes import PAGE, SERVICES, simulated_objects
+from actum_command.processes import GATEWAY, SERVICES, simulated_objects
+from actum_command.service_settings import DECLARED, TRAINER
 from compose_files import DEPLOY, MAIN, ROOT, services_of
 from live import System, free_endpoint, wait_until
 
 ROUTER_CONFIG = DEPLOY / "zenoh" / "router.json5"
-SIX = {"scene_simulator", PAGE, *SERVICES}
+SIX = DECLARED.keys() - {GATEWAY, TRAINER}
 UNCHECKED = {"demo_model", "watch"}
-TRAINER = "model_trainer"
 ACTIONS = {"push", "pull", "put", "lift", "point"}
 STOPPED_WITHIN_S = 10.0
 HEALTHY_WITHIN_S = 5.0

@@ -126,8 +126,11 @@ def record(  # noqa: PLR0913, PLR0917 - one parameter is one option
     deadline_s = time.monotonic() + (seconds if seconds is not None else float("inf"))
     try:
         with connect() as client, Recorder(output, person=person, source=client.sensor) as recorder:
-            stream = StreamRecorder(recorder, STREAMS | IMAGES if images else STREAMS, label, _origins(marks, times))
-            listening = client.listen(keys.everything(client.sensor))
+            topics = STREAMS | IMAGES if images else STREAMS
+            stream = StreamRecorder(recorder, topics, label, _origins(marks, times))
+            listening = [
+                client.listen_back(keys.pattern(topic, client.sensor), 0.0) for topic in keys.TOPICS if topic in topics
+            ]
             say(f"recording actum/{client.sensor}/** to {output}; Ctrl-C ends")
             storing = stream if times is None or label is None else _repeating(stream, label, times, stop)
             store_all(listening, storing, stop, deadline_s)

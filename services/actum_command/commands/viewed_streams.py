@@ -67,7 +67,7 @@ class LiveStreams:
 
     def give(self, showing: Showing, stop: threading.Event) -> None:
         """Show what comes until stopped."""
-        store_all(self._listening, showing, stop, float("inf"))
+        store_all([self._listening], showing, stop, float("inf"))
 
 
 class RecordedStreams:

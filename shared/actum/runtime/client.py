@@ -119,9 +119,11 @@ class Client:
         """Subscribe to keys, request what is lost on the way, and what was put in the last `history_s` (s) and is kept.
 
         The first read, also by `receive`, waits for what is kept: as a rule some milliseconds, two seconds at most.
+        With a history of 0 nothing of the past is requested, nor waited for.
         A service that was started anew offers its last answers once more: the same `segment_id` says the same.
         """
-        return self._listening_to(RecoveringSubscriber(self._session, key_expr, DEEP_RING, Past(history_s)))
+        past = Past(history_s) if history_s else None
+        return self._listening_to(RecoveringSubscriber(self._session, key_expr, DEEP_RING, past))
 
     def _take_each(self, stream: Iterable[T], take: Callable[[T], None]) -> None:
         def run() -> None:

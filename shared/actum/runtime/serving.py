@@ -64,10 +64,10 @@ def needs_extra(name: str) -> Iterator[None]:
 
 
 class Front(Node, Protocol):
-    """A node with a server of its own, which runs also while there is no router."""
+    """A node with a thread of its own, such as a server's or a voice's, which runs also while there is no router."""
 
     def serving(self) -> AbstractContextManager[None]:
-        """Serve people until the context is left."""
+        """Run the thread until the context is left."""
         ...
 
     def attach(self, client: Client | None) -> None:
@@ -76,7 +76,7 @@ class Front(Node, Protocol):
 
     @property
     def working(self) -> bool:
-        """Whether people are served."""
+        """Whether the thread runs."""
         ...
 
 
