@@ -5,7 +5,7 @@ from typer.testing import CliRunner
 
 from actum.command_line import from_command_line, placeholder
 from actum.settings import ServiceSettings
-from actum_command import processes
+from actum_command import processes, startup
 from actum_command.__main__ import app
 from actum_command.service_settings import DECLARED, SET_BY_UP
 from actum_command.supervising import Program
@@ -83,6 +83,15 @@ def test_what_nobody_would_heed_is_refused(arguments: tuple[str, ...], reason: s
     assert ended.exit_code in (1, 2), ended.output
     assert reason in " ".join(ended.stderr.split())
     assert started == []
+
+
+@pytest.mark.parametrize("source", ["none", "simulator", "camera"])
+def test_what_a_further_service_heeds_is_taken_with_every_source(source: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Speaking(ServiceSettings):
+        voice: str = "alto"
+
+    monkeypatch.setattr(startup, "DECLARED", {**DECLARED, "speaker": Speaking})
+    assert startup.chosen_source(source, {"voice": ["bass"]}) == source
 
 
 def test_the_page_is_told_its_settings_and_can_be_left_out(started: list[Program]) -> None:
