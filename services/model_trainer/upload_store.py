@@ -1,10 +1,13 @@
 """Files that come in pieces."""
 
 import shutil
+import weakref
 from pathlib import Path
+from tempfile import mkdtemp
 
-from actum.atomic_file import UNFINISHED, store_names
+from actum.atomic_file import UNFINISHED, claim, store_names
 from actum.commands import Refusal
+from actum.recorder import is_being_written
 
 MOST_BYTES = 2_000_000_000
 """Largest file (bytes): half an hour of a phone's video."""
@@ -14,15 +17,23 @@ MOST_FILES = 1000
 """Most files, finished or not."""
 SENT = ".sent"
 """The folder within the store's that holds what was sent: no file outside of it is touched."""
+CLAIM = ".serving"
+"""The file in the folder of one trainer's uploads that this trainer has claimed while it runs."""
 
 
 class UploadStore:
-    """The files that were sent, in a folder. They do not outlive the service: they show faces."""
+    """The files that were sent to one trainer, in a folder of their own. They do not outlive it: they show faces."""
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder / SENT
-        folder.mkdir(parents=True, exist_ok=True)
-        shutil.rmtree(self._folder, ignore_errors=True)
+        sent = folder / SENT
+        sent.mkdir(parents=True, exist_ok=True)
+        for left in sent.iterdir():
+            if not is_being_written(left / CLAIM):  # by another trainer, in the same folder
+                shutil.rmtree(left, ignore_errors=True) if left.is_dir() else left.unlink(missing_ok=True)
+        self._folder = Path(mkdtemp(dir=sent))
+        claimed = (self._folder / CLAIM).open("wb")
+        claim(claimed)
+        weakref.finalize(self, claimed.close)
 
     def add(self, name: str, offset: int, data: bytes, last: bool) -> int:
         """Add a piece at the end of a file, or begin it anew at offset 0; return its size so far (bytes).
@@ -33,7 +44,7 @@ class UploadStore:
         """
         self._folder.mkdir(parents=True, exist_ok=True)
         unfinished = self._folder / f".{name}{UNFINISHED}"
-        sizes = {file.name: file.stat().st_size for file in self._folder.iterdir()}
+        sizes = {file.name: file.stat().st_size for file in self._folder.iterdir() if file.name != CLAIM}
         arrived = sizes.pop(unfinished.name, 0)
         if offset not in (0, arrived):
             raise Refusal(

@@ -80,6 +80,8 @@ def test_what_the_service_left_unfinished_goes_with_the_next_start(teacher: Teac
     send(teacher)
     left = [
         "uploads/.sent/clip.mp4",
+        "uploads/.sent/killed/clip.mp4",
+        "uploads/.sent/killed/.serving",
         "jobs/job-7.work/model.npz",
         "sets/.making/1.mcap.part",
         "sets/.leaving-17/set.json",
@@ -377,6 +379,14 @@ def test_uploads_never_take_more_than_the_total(
         sizes = {each: total for each, total in sizes.items() if not (each == name and last)}
         there = sum(file.stat().st_size for file in tmp_path.rglob("*") if file.is_file())
         assert there <= 100
+
+
+def test_uploads_wait_for_their_import_while_another_trainer_starts_in_the_folder(teacher: Teacher) -> None:
+    send(teacher, data=b"mine")
+    other = Teacher(teacher.folder)
+    send(other, data=b"another of that name")
+    teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="nod")
+    assert teacher.jobs[-1].arguments.video.read_bytes() == b"mine"
 
 
 def test_too_many_uploads_are_refused(teacher: Teacher, monkeypatch: pytest.MonkeyPatch) -> None:
