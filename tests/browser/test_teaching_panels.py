@@ -362,6 +362,7 @@ def test_what_was_held_back_is_corrected_by_one_click_each_and_the_model_made_an
     says(models, "model-list", "In use: model")
     frames = Stream().repeat(WAVES).skeletons(first_ns=1_700_000_000 * SECOND_NS)
     room.see(frames)
+    room.teacher.passed_ns += SECOND_NS
     go_to(models, "live")
     for from_s, really, kept in ((1, "It was wave", "an example of wave"), (4, "None of the actions", "none of the")):
         room.page.give(held_back(frames, from_s))
@@ -370,12 +371,19 @@ def test_what_was_held_back_is_corrected_by_one_click_each_and_the_model_made_an
         press(models, really)
         says(models, "explanation", f"Kept in the set {SET} as {kept}")
     assert Counter(each["label"] for each in room.teacher.examples(SET)) == {"wave": 6, "goggles": 5, NONE: 1}
+    go_to(models, "models")
+    models.reload()
+    says(models, "model-list", "In use: model")
+    go_to(models, "live")
+    room.page.give(frames[-1], held_back(frames, 7))
+    models.get_by_role("button", name="like wave, but not like enough: 0.7, not told").click()
     press(models, "Update the model (2 corrections)")
     wait_until(lambda: len(room.teacher.jobs) == 2, "it is updated")
     [model] = room.teacher.ask("list")["models"]
     assert room.teacher.jobs[-1].arguments.model.name == f"{model['id']}.npz"
     room.end_job(trained())
     says(models, "explanation", "The new model is in use within two seconds.")
+    models.get_by_role("button", name="Update the model").wait_for(state="hidden")
 
 
 def test_a_correction_that_is_refused_is_told(room: Lesson, models: Any) -> None:
