@@ -1,13 +1,11 @@
 """Files that come in pieces."""
 
 import shutil
-import weakref
 from pathlib import Path
-from tempfile import mkdtemp
 
-from actum.atomic_file import UNFINISHED, claim, store_names
+from actum.atomic_file import UNFINISHED, store_names
 from actum.commands import Refusal
-from actum.recorder import is_being_written
+from actum.run_folder import CLAIM, RunFolder
 
 MOST_BYTES = 2_000_000_000
 """Largest file (bytes): half an hour of a phone's video."""
@@ -17,8 +15,6 @@ MOST_FILES = 1000
 """Most files, finished or not."""
 SENT = ".sent"
 """The folder within the store's that holds what was sent: no file outside of it is touched."""
-CLAIM = ".serving"
-"""The file in the folder of one trainer's uploads that this trainer has claimed while it runs."""
 
 
 class UploadStore:
@@ -27,13 +23,8 @@ class UploadStore:
     def __init__(self, folder: Path) -> None:
         sent = folder / SENT
         sent.mkdir(parents=True, exist_ok=True)
-        for left in sent.iterdir():
-            if not is_being_written(left / CLAIM):  # by another trainer, in the same folder
-                shutil.rmtree(left, ignore_errors=True) if left.is_dir() else left.unlink(missing_ok=True)
-        self._folder = Path(mkdtemp(dir=sent))
-        claimed = (self._folder / CLAIM).open("wb")
-        claim(claimed)
-        weakref.finalize(self, claimed.close)
+        self._run = RunFolder("", sent)  # another trainer may serve in the same folder
+        self._folder = self._run.path
 
     def add(self, name: str, offset: int, data: bytes, last: bool) -> int:
         """Add a piece at the end of a file, or begin it anew at offset 0; return its size so far (bytes).
