@@ -12,7 +12,8 @@ from model_trainer.job_commands import JobCommands
 from model_trainer.model_store import ModelStore
 from model_trainer.replies import Done, Everything, ModelListed, SetListed, TakeListed
 from model_trainer.requests import CreateSet, OfSet, RenameSet
-from model_trainer.set_store import SetStore, StoredSet
+from model_trainer.set_store import SetStore
+from model_trainer.stored_set import StoredSet
 from model_trainer.take_commands import TakeCommands
 from som_classifier.presets import DEFAULT, PRESETS
 

@@ -23,6 +23,7 @@ from actum.run_folder import CLAIM
 from model_trainer import upload_store
 from model_trainer.job_process import Ended, Progressing
 from model_trainer.set_store import SetStore
+from model_trainer.stored_set import SetReader
 from people import FRAME_NS
 from performers import TINY_PAPER
 from recognisers import tiny_model
@@ -269,13 +270,13 @@ def test_whatever_vanishes_commands_are_refused_and_the_service_goes_on(teacher:
 def test_a_take_that_vanishes_between_listing_and_reading_is_told(
     teacher: Teacher, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    read = SetStore._take
+    read = SetReader.take
 
-    def vanish(store: SetStore, path: Path) -> Any:
+    def vanish(reader: SetReader, path: Path) -> Any:
         path.unlink()
-        return read(store, path)
+        return read(reader, path)
 
-    monkeypatch.setattr(SetStore, "_take", vanish)
+    monkeypatch.setattr(SetReader, "take", vanish)
     (listed,) = teacher.ask("list")["sets"]
     assert listed["takes"] == [] and "take-0001.mcap" in listed["unreadable"][0]
 
