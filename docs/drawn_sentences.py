@@ -21,7 +21,7 @@ from actum_command.service_settings import SETTINGS
 PACKAGES = ("shared/actum", "services")
 REFUSING = ("fail", "warning", "error", "critical", "exception")
 """The functions and the logger's methods that print what went wrong."""
-FINDINGS = ("diagnosis", "service_checks", "stream_checks", "obstacles", "advice")
+FINDINGS = ("diagnosis", "service_checks", "stream_checks", "obstacles", "tls_faults", "advice")
 """The modules whose functions yield or return what is wrong."""
 FUNCTIONS = ("join", "split", "any", "map", "str", "sorted", "getattr")
 """Functions whose names do not say what they are applied to, so that a hole gets the name of that."""

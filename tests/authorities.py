@@ -1,34 +1,26 @@
-"""Certificate authorities of tests and what they sign, made by the program openssl; and roles' folders of them."""
+"""Certificate authorities of tests, and what they sign for roles: folders of credentials."""
 
-import shutil
-import subprocess
+from datetime import timedelta
 from pathlib import Path
 
-OPENSSL = shutil.which("openssl")
-NEW_KEY = ("req", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes")
-ENDED = ("-days", "-1")
-"""Options of a certificate that expired yesterday."""
-
-
-def openssl(folder: Path, *arguments: str) -> None:
-    subprocess.run([str(OPENSSL), *arguments], cwd=folder, check=True, capture_output=True)
+from actum_deployer.certificates import new_authority, new_certificate, now
 
 
 class Authority:
-    """An authority in a folder of its own."""
+    """An authority that signs in a folder of its own."""
 
     def __init__(self, folder: Path) -> None:
         folder.mkdir()
         self._folder = folder
-        openssl(folder, *NEW_KEY, "-x509", "-subj", "/CN=authority", "-keyout", "ca.key", "-out", "ca.pem")
+        self._signed = new_authority("authority", now())
+        (folder / "ca.pem").write_bytes(self._signed.certificate_pem)
 
-    def role(self, name: str, *options: str, host: str = "localhost") -> Path:
+    def role(self, name: str, host: str = "localhost", days_left: int = 1) -> Path:
         """Sign a certificate for a role, and return the folder of its credentials."""
         role = self._folder / name
         role.mkdir()
-        (role / "names").write_text(f"subjectAltName=DNS:{host}\nbasicConstraints=CA:FALSE\n")
-        openssl(role, *NEW_KEY, "-subj", f"/CN={name}", "-keyout", "key.pem", "-out", "request.pem")
-        signed = ("-CA", "../ca.pem", "-CAkey", "../ca.key", "-CAcreateserial", "-extfile", "names", *options)
-        openssl(role, "x509", "-req", "-in", "request.pem", "-out", "certificate.pem", *signed)
-        shutil.copy(self._folder / "ca.pem", role)
+        signed = new_certificate(self._signed, name, now() - timedelta(days=2), days_left + 2, [host])
+        for file, content in (("certificate", signed.certificate_pem), ("key", signed.key_pem)):
+            (role / f"{file}.pem").write_bytes(content)
+        (role / "ca.pem").write_bytes(self._signed.certificate_pem)
         return role

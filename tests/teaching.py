@@ -41,7 +41,7 @@ class Teacher:
         self.jobs: list[ScriptedJob] = []
         self.told: list[Training] = []
         self._stamp_ns = SECOND_NS
-        self._ticks = self._starts = 0
+        self._ticks = self._starts = self.passed_ns = 0
         self._start = start or self._scripted
         self.begin()
 
@@ -54,7 +54,7 @@ class Teacher:
             self.model,
             "kinect0",
             self._start,
-            lambda: now_ns,
+            lambda: now_ns + self.passed_ns,
             OriginalModel(self.original, self.model),
         )
         self._commands = {command.name: command for command in self.trainer.commands}

@@ -1,16 +1,13 @@
 """Which model a system starts with: the named one, the one that was put into use last, or the one that ships."""
 
 import filecmp
-import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import BinaryIO
 
-from actum.atomic_file import PRIVATE_FOLDER, claim
-from actum.recorder import is_being_written
+from actum.atomic_file import PRIVATE_FOLDER
+from actum.run_folder import RunFolder
 from actum.settings import SettingsError
 from actum_command.misspelt import nearest
 from actum_command.service_settings import Given
@@ -30,8 +27,6 @@ REMINDER_S = 30.0
 """Interval (s) at which a named model that is missing is named again: the services' first lines hide the first."""
 RUN = "run-"
 """How the names of the folders of runs begin."""
-CLAIM = ".running"
-"""The file in the folder of a run that its process has claimed while it runs."""
 
 
 @dataclass(frozen=True)
@@ -71,37 +66,18 @@ def model_in_use(named: Path | None, source: str, given: Given) -> Iterator[Mode
         return
     try:
         taught.parent.mkdir(PRIVATE_FOLDER, parents=True, exist_ok=True)
-        folder_of_run = TemporaryDirectory(prefix=RUN, dir=taught.parent, ignore_cleanup_errors=True)
-        claimed = _claimed(Path(folder_of_run.name))
-        _delete_ended(taught.parent, Path(claimed.name))
+        folder = RunFolder(RUN, taught.parent)  # two systems at a time share no model
     except OSError as error:
         raise SettingsError(
             f"the folder {taught.parent} cannot be used ({error}): set ACTUM_TRAINER_DATA to another folder"
         ) from None
-    with folder_of_run as folder, claimed:  # two systems at a time share no model
-        model = ModelInUse(Path(folder) / MODEL, original)
+    try:
+        model = ModelInUse(folder.path / MODEL, original)
         if original is not None:
             OriginalModel(original, model.file).copy_changed()
         yield model
-
-
-def _claimed(folder: Path) -> BinaryIO:
-    """Claim the folder of a run until the file that is returned is closed or the process ends, however it ends."""
-    file = (folder / CLAIM).open("wb")
-    claim(file)
-    file.write(b"claimed\n")  # a file that is empty yet is no claim for others
-    file.flush()
-    return file
-
-
-def _delete_ended(parent: Path, own: Path) -> None:
-    """Delete the folders of runs that were killed; none where this run's own claim shows that files are not locked."""
-    if not is_being_written(own):
-        return
-    for claimed in parent.glob(f"{RUN}*/{CLAIM}"):
-        with suppress(FileNotFoundError):  # another run has deleted it meanwhile
-            if claimed.stat().st_size and not is_being_written(claimed):
-                shutil.rmtree(claimed.parent, ignore_errors=True)
+    finally:
+        folder.delete()
 
 
 def lack_of_file(model: ModelInUse) -> str | None:

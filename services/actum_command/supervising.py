@@ -8,10 +8,10 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import IO, Self
 
+from actum.run_folder import RunFolder
 from actum.runtime.serving import TAKEN, UNUSABLE
 from actum.runtime.stopping import PARENT
 
@@ -63,7 +63,7 @@ class Supervisor:
 
     def __init__(self, log: Path | None = None) -> None:
         self._log: IO[bytes] | None = log.open("ab") if log else None
-        self._state = TemporaryDirectory(prefix="actum-state-", ignore_cleanup_errors=True)
+        self._state = RunFolder("actum-state-")
         self._children: list[_Child] = []
 
     def __enter__(self) -> Self:
@@ -132,7 +132,7 @@ class Supervisor:
         """Send every process SIGTERM, and kill those that do not end."""
         stop_processes([child.process for child in self._children])
         self._children.clear()
-        self._state.cleanup()
+        self._state.delete()
         if self._log:
             self._log.close()
             self._log = None
@@ -140,7 +140,7 @@ class Supervisor:
     def _spawn(self, program: Program) -> subprocess.Popen[bytes]:
         return subprocess.Popen(
             [sys.executable, "-m", program.module, *program.arguments],
-            env={STATE: self._state.name, **os.environ, **program.environment, PARENT: str(os.getpid())},
+            env={STATE: str(self._state.path), **os.environ, **program.environment, PARENT: str(os.getpid())},
             stdin=subprocess.DEVNULL,
             stdout=self._log,
             stderr=subprocess.STDOUT if self._log else None,

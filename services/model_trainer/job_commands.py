@@ -189,7 +189,7 @@ class JobCommands:
         """Keep a job's model or take; return its result in a sentence."""
         folder = self._jobs.work_folder(job.id)
         if job.kind == "train":
-            stored = self._models.add(folder / MODEL, job.set, result["scores"])
+            stored = self._models.add(folder / MODEL, job.set, result["scores"], job.started)
             self._changes.revision += 1
             return f"model {stored.id}: {counted(stored.samples, 'example')} of {counted(len(stored.labels), 'action')}"
         if job.kind == "import":

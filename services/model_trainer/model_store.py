@@ -79,15 +79,15 @@ class ModelStore:
                 return each
         raise Refusal(f"there is no model {model_id!r}: use an id that the command 'list' lists")
 
-    def add(self, file: Path, set_name: str, scores: dict[str, float]) -> StoredModel:
-        """Keep a copy of a model file.
+    def add(self, file: Path, set_name: str, scores: dict[str, float], created: str) -> StoredModel:
+        """Keep a copy of a model file whose training began at that time (ISO 8601).
 
         Raises:
             ModelError: it is none.
             OSError: it cannot be written.
         """
         model = load_model(file)
-        self._describe(model, set_name, scores)
+        self._describe(model, set_name, scores, created)
         copy(file, self._path(model.id))
         return self.get(model.id)
 
@@ -192,7 +192,7 @@ class ModelStore:
         """
         if not self._path(model_id).exists():
             try:
-                self.add(file, "", {})
+                self.add(file, "", {}, self._now())
             except (ModelError, Refusal) as error:  # it was replaced meanwhile, or nothing can be read here
                 raise OSError(str(error)) from None
 
@@ -221,10 +221,13 @@ class ModelStore:
     def _path(self, model_id: str) -> Path:
         return self._folder / f"{model_id}.npz"
 
-    def _describe(self, model: Model, set_name: str, scores: dict[str, float]) -> StoredModel:
+    def _now(self) -> str:
+        return date_of(self._now_ns())
+
+    def _describe(self, model: Model, set_name: str, scores: dict[str, float], created: str) -> StoredModel:
         """Write beside a model's file what is listed of it."""
         about = About(
-            created=date_of(self._now_ns()),
+            created=created,
             set=set_name,
             labels=list(model.labels),
             people=model.metadata.persons,
@@ -243,7 +246,7 @@ class ModelStore:
             OSError: it cannot be described.
         """
         model = load_model(path)
-        taken = self._describe(model, "", {})
+        taken = self._describe(model, "", {}, self._now())
         path.replace(taken.path)
         return taken
 

@@ -70,6 +70,8 @@ class SetListed(Reply):
     """Who is in it."""
     background_s: float
     """For how long its takes show people who do none of the actions (s)."""
+    corrections: int
+    """How many corrections in it the model in use does not know: those made after its training began."""
     takes: list[TakeListed]
     """Its recordings."""
     unreadable: list[str]
@@ -82,7 +84,7 @@ class ModelListed(Reply):
     id: str
     """Its name: a digest of all it holds."""
     created: str
-    """When it came (ISO 8601)."""
+    """When its training began, or when it came from elsewhere (ISO 8601)."""
     set: str
     """The set that it was trained on; empty where that is not known."""
     labels: list[str]

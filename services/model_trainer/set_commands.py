@@ -7,11 +7,13 @@ from actum.codec import encodable
 from actum.commands import Command, NoFields, Refusal
 from actum.node import Counters
 from model_trainer.changes import Changes
+from model_trainer.correction_commands import is_correction
 from model_trainer.job_commands import JobCommands
 from model_trainer.model_store import ModelStore
 from model_trainer.replies import Done, Everything, ModelListed, SetListed, TakeListed
 from model_trainer.requests import CreateSet, OfSet, RenameSet
-from model_trainer.set_store import SetStore, StoredSet
+from model_trainer.set_store import SetStore
+from model_trainer.stored_set import StoredSet
 from model_trainer.take_commands import TakeCommands
 from som_classifier.presets import DEFAULT, PRESETS
 
@@ -50,9 +52,10 @@ class SetCommands:
         """List all sets and models."""
         active, sets = self._models.active, list[SetListed]()
         models, unreadable = self._models.listed()
+        since = next((each.created for each in models if each.id == active), "")
         for name in self._sets.names():
             try:
-                sets.append(_listed(self._sets.get(name)))
+                sets.append(_listed(self._sets.get(name), since))
             except (OSError, Refusal) as error:  # its folder has vanished meanwhile, or cannot be read
                 unreadable.append(encodable(str(error)))
         problems = [*unreadable, *(problem for each in sets for problem in each.unreadable)]
@@ -96,13 +99,15 @@ class SetCommands:
             raise Refusal(f"the set {name} is in use by {job}: wait until it ends, or cancel it")
 
 
-def _listed(stored: StoredSet) -> SetListed:
+def _listed(stored: StoredSet, since: str) -> SetListed:
+    """Describe a set beside a model whose training began at that time (ISO 8601)."""
     return SetListed(
         name=stored.name,
         created=stored.created,
         actions=dict(sorted(Counter(label for take in stored.takes for label in take.labels).items())),
         people=sorted({take.person for take in stored.takes if take.person}),
         background_s=sum(take.background_s for take in stored.takes),
+        corrections=sum(is_correction(take) and take.created > since for take in stored.takes),
         takes=[TakeListed.of(take) for take in stored.takes],
         unreadable=list(stored.unreadable),
     )

@@ -5,58 +5,29 @@ import os
 import re
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from itertools import count
 from pathlib import Path
 from unicodedata import normalize
 
-from pydantic import BaseModel
-
 from actum.atomic_file import clear_unfinished, give_name, store_names, write_whole
-from actum.codec import encodable
 from actum.commands import Refusal
-from actum.mcap_file import AGAIN
 from actum.recorder import Recorder, is_being_written
-from actum.recording import Recording, RecordingError
-from actum_examples.take import CREATED, KIND, Take, read_take
-from model_trainer.small_files import small_file
+from actum_examples.take import CREATED, KIND, Take
+from model_trainer.stored_set import DESCRIPTION, SUFFIX, SetReader, StoredSet
 
 Clock = Callable[[], int]
 """Returns the time of the machine's clock, ns since 1970."""
-MOST_SEGMENTS = 2000
-"""Most segments of a take, some hours of actions: a change of one looks at all others, while the service waits."""
-DESCRIPTION = "set.json"
-"""The file that makes a folder a set."""
 MAKING = ".making"
 """The folder of takes that are being recorded."""
 LEAVING = ".leaving-"
 """Beginning of the name of a folder that is being deleted."""
 LEFT = re.compile(rf"{re.escape(LEAVING)}[0-9]+")
 """The names of such folders."""
-SUFFIX = ".mcap"
-"""Ending of takes."""
 TAKE = re.compile(r"take-([0-9]{4,9})")
 """The names of takes that are made here."""
 DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{kind}{n}" for kind in ("com", "lpt") for n in range(1, 10))})
 """Names that Windows keeps for devices, with any ending: a set of that name could not be copied there."""
-
-
-class Description(BaseModel):
-    """What stands in a set's file."""
-
-    created: str
-
-
-@dataclass(frozen=True)
-class StoredSet:
-    """A set: its name, when it was made (ISO 8601; empty where that cannot be read), its takes, and of each file that
-    cannot be read, or not to its end, why."""
-
-    name: str
-    created: str
-    takes: tuple[Take, ...]
-    unreadable: tuple[str, ...]
 
 
 class SetStore:
@@ -65,7 +36,7 @@ class SetStore:
     def __init__(self, folder: Path, now_ns: Clock) -> None:
         self._folder = folder
         self._now_ns = now_ns
-        self._read: dict[Path, tuple[tuple[int, int], Take]] = {}
+        self._reader = SetReader()
         folder.mkdir(parents=True, exist_ok=True)
         for take in (folder / MAKING).glob("*"):
             with suppress(OSError):  # none of ours
@@ -115,28 +86,7 @@ class SetStore:
             Refusal: there is none of that name.
             OSError: its folder cannot be read.
         """
-        folder = self.folder(name)
-        takes, unreadable = [], []
-        try:
-            created = _created(folder / DESCRIPTION)
-        except (OSError, ValueError) as error:
-            created = ""
-            problem = (
-                error.strerror or str(error)
-                if isinstance(error, OSError)
-                else "the file is not a JSON object with a date in the field `created`"
-            )
-            unreadable.append(
-                f"{folder / DESCRIPTION}: {problem}; move this file to another folder, and create the set again"
-            )
-        for path in sorted(each for each in folder.iterdir() if each.name.endswith(SUFFIX)):
-            try:
-                takes.append(self._take(path))
-                if takes[-1].recording.truncated:
-                    unreadable.append(f"{path}: the recording breaks off, and its examples may be lost; {AGAIN}")
-            except (OSError, RecordingError) as error:
-                unreadable.append(str(error))
-        return StoredSet(encodable(name), created, tuple(takes), tuple(map(encodable, unreadable)))
+        return self._reader.set(name, self.folder(name))
 
     def folder(self, name: str) -> Path:
         """Return a set's folder.
@@ -210,7 +160,7 @@ class SetStore:
             with suppress(FileExistsError):
                 give_name(path, target)
                 break
-        return self._take(target)
+        return self._reader.take(target)
 
     def _refuse_unusable(self, name: str, renamed: str | None = None) -> None:
         if name.partition(".")[0].rstrip().casefold() in DEVICES:
@@ -218,30 +168,6 @@ class SetStore:
         for existing in self.names():
             if existing.casefold() == name.casefold() and existing != renamed:
                 raise Refusal(f"there is already a set {existing!r}: choose another name")
-
-    def _take(self, path: Path) -> Take:
-        """Read a take, or return what was read of it before where the file is still the same."""
-        if path.exists() and not path.is_file():
-            raise RecordingError(
-                path,
-                "the path names a folder or a device, not a recording file",
-                "move this folder or device out of the folder of the set",
-            )
-        stat = path.stat()
-        version = stat.st_mtime_ns, stat.st_size
-        known = self._read.get(path)
-        if known is not None and known[0] == version:
-            return known[1]
-        take = read_take(Recording(path))
-        if (count := len(take.segments)) > MOST_SEGMENTS:
-            raise RecordingError(
-                path,
-                f"the recording has {count} actions with a start and an end; at most {MOST_SEGMENTS} are allowed",
-                "delete some of these actions with 'actum label delete', or record the actions in several shorter "
-                "recordings",
-            )
-        self._read[path] = version, take
-        return take
 
 
 def take_number(stem: str) -> int:
@@ -253,17 +179,6 @@ def take_number(stem: str) -> int:
 def date_of(time_ns: int) -> str:
     """Write a time (ns since 1970) as ISO 8601 in UTC, to the second."""
     return datetime.fromtimestamp(time_ns // 1_000_000_000, UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
-
-
-def _created(path: Path) -> str:
-    """Return when a set was made.
-
-    Raises:
-        OSError, ValueError: its description cannot be read, or is of another form.
-    """
-    created = Description.model_validate_json(small_file(path)).created
-    datetime.fromisoformat(created)
-    return created
 
 
 def _clear(folder: Path) -> None:

@@ -15,7 +15,7 @@ class About(BaseModel):
     """What stands beside a model's file.
 
     Attributes:
-        created: when it came (ISO 8601).
+        created: when its training began, or when it came from elsewhere (ISO 8601).
         set: the set that it was trained on; empty where that is not known.
         labels: its actions.
         people: whose examples it was trained on.

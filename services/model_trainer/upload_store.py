@@ -5,6 +5,7 @@ from pathlib import Path
 
 from actum.atomic_file import UNFINISHED, store_names
 from actum.commands import Refusal
+from actum.run_folder import CLAIM, RunFolder
 
 MOST_BYTES = 2_000_000_000
 """Largest file (bytes): half an hour of a phone's video."""
@@ -17,12 +18,13 @@ SENT = ".sent"
 
 
 class UploadStore:
-    """The files that were sent, in a folder. They do not outlive the service: they show faces."""
+    """The files that were sent to one trainer, in a folder of their own. They do not outlive it: they show faces."""
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder / SENT
-        folder.mkdir(parents=True, exist_ok=True)
-        shutil.rmtree(self._folder, ignore_errors=True)
+        sent = folder / SENT
+        sent.mkdir(parents=True, exist_ok=True)
+        self._run = RunFolder("", sent)  # another trainer may serve in the same folder
+        self._folder = self._run.path
 
     def add(self, name: str, offset: int, data: bytes, last: bool) -> int:
         """Add a piece at the end of a file, or begin it anew at offset 0; return its size so far (bytes).
@@ -33,7 +35,7 @@ class UploadStore:
         """
         self._folder.mkdir(parents=True, exist_ok=True)
         unfinished = self._folder / f".{name}{UNFINISHED}"
-        sizes = {file.name: file.stat().st_size for file in self._folder.iterdir()}
+        sizes = {file.name: file.stat().st_size for file in self._folder.iterdir() if file.name != CLAIM}
         arrived = sizes.pop(unfinished.name, 0)
         if offset not in (0, arrived):
             raise Refusal(

@@ -1,5 +1,7 @@
 """`actum deploy` says what it has written, and what cannot be."""
 
+import errno
+import os
 import re
 import shutil
 import subprocess
@@ -109,6 +111,23 @@ def test_without_security_there_are_no_credentials(tmp_path: Path) -> None:
 )
 def test_what_cannot_be_done_is_refused(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:
     assert said in refusal(*arguments, tmp_path)
+
+
+def test_a_file_in_the_place_of_the_folder_or_above_it_is_refused_in_words(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    remedy = "solve this problem, or name another file or folder"
+    for place, problem in ((tmp_path / "file", "File exists"), (tmp_path / "file/lab", "Not a directory")):
+        said = " ".join(refusal("init", *HOSTS, place).split())
+        assert said == f"actum: {place} cannot be used ({problem}): {remedy}"
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+def test_a_folder_that_cannot_be_written_is_refused_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def read_only(path: Path, *_: object, **__: object) -> None:
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS), str(path))
+
+    monkeypatch.setattr(Path, "mkdir", read_only)
+    assert "lab cannot be used (Read-only file system): solve this problem" in refusal("init", *HOSTS, tmp_path / "lab")
 
 
 def files_of(folder: Path) -> dict[Path, bytes]:

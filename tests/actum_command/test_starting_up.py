@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from actum_command import model_in_use as models
+from actum.run_folder import CLAIM
 from actum_command import processes
 from actum_command.__main__ import app
-from actum_command.model_in_use import CLAIM, REMINDER_S, ModelInUse, Reminder, model_in_use
+from actum_command.model_in_use import REMINDER_S, ModelInUse, Reminder, model_in_use
 from actum_command.simulated_model import SIMULATED_MODEL
 from actum_command.supervising import Program
 from recognisers import tiny_model
@@ -145,7 +145,7 @@ def test_what_is_no_folder_of_a_killed_run_is_left_alone(tmp_path: Path) -> None
 
 
 def test_where_files_cannot_be_locked_no_folder_is_deleted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(models, "is_being_written", lambda _file: False)
+    monkeypatch.setattr("actum.run_folder.is_being_written", lambda _file: False)
     named, given = tmp_path / "mine.npz", {"trainer_data": [str(tmp_path / "teaching")]}
     tiny_model().save(named)
     with model_in_use(named, "camera", given) as model, model_in_use(named, "camera", given):

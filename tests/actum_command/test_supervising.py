@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
@@ -38,6 +39,27 @@ def test_what_ends_is_announced_and_started_again(ending: type[Program], tmp_pat
     with Supervisor(tmp_path / "log") as supervisor:
         supervisor.start(ending("worker", "ending", ["1"]))
         assert outcome(supervisor) == ["worker ended with code 1 and restarts in 0.5 s"]
+
+
+KILLED = """
+import os, signal
+from actum_command.supervising import Supervisor
+running = Supervisor()
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_the_last_answers_of_a_killed_run_are_deleted_by_the_next(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with Supervisor():
+        running = {*tmp_path.iterdir()}
+        subprocess.run([sys.executable, "-c", KILLED], env={**os.environ, "TMPDIR": str(tmp_path)}, check=False)
+        assert len(list(tmp_path.iterdir())) == 2
+        with Supervisor():
+            assert running < {*tmp_path.iterdir()} and len(list(tmp_path.iterdir())) == 2
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_is_killed_is_another_process_afterwards(tmp_path: Path) -> None:

@@ -1,10 +1,12 @@
 """The settings of the search are picked from labelled continuous recordings, by what the classifier would tell."""
 
+import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 from actum.messages import Skeleton
 from actum.node import SECOND_NS
@@ -18,6 +20,7 @@ from actum_model_trainer.tuning.doubts import rate_bounds
 from actum_model_trainer.tuning.sensitivities import plainest, sensitivities
 from actum_model_trainer.tuning.trials import Trial, tried
 from actum_model_trainer.tuning.tuning import NothingLabelledError, tuned
+from actum_model_trainer.tuning.tuning_report import tuning_report
 from actum_model_trainer.tuning.weighing import Weighed
 from days import days, fidgeting, searching_model
 from people import FRAME_NS, skeleton
@@ -147,6 +150,20 @@ def test_what_speaks_against_the_choice_is_said(model: Model, recordings: list[R
     bare = tuned(model, [record("bare", *skeletons, *marks, person="")]).doubts
     assert any("the recordings contain no background" in doubt for doubt in bare)
     assert any("names no person" in doubt for doubt in bare)
+
+
+def test_only_where_no_settings_have_as_few_false_alarms_as_wanted_that_is_said(
+    model: Model, recordings: list[Recording]
+) -> None:
+    result = tuned(model, recordings[:1])
+    noisy = replace(result, best=result.outcomes[0])
+    false_per_min = noisy.best.scores.false_per_min
+    assert false_per_min is not None and false_per_min > 1.0
+    sentence = "no settings have as few as 1 false alarms a minute here: these have the fewest"
+    for most_per_min, said in ((None, []), (false_per_min, []), (1.0, [sentence])):
+        shown = io.StringIO()
+        Console(width=110, file=shown).print(tuning_report(noisy, most_per_min, 0.0))
+        assert [line.strip() for line in shown.getvalue().splitlines() if "no settings" in line] == said
 
 
 def test_how_sure_a_rate_is_follows_from_the_number_counted() -> None:

@@ -362,6 +362,7 @@ def test_what_was_held_back_is_corrected_by_one_click_each_and_the_model_made_an
     says(models, "model-list", "In use: model")
     frames = Stream().repeat(WAVES).skeletons(first_ns=1_700_000_000 * SECOND_NS)
     room.see(frames)
+    room.teacher.passed_ns += SECOND_NS
     go_to(models, "live")
     for from_s, really, kept in ((1, "It was wave", "an example of wave"), (4, "None of the actions", "none of the")):
         room.page.give(held_back(frames, from_s))
@@ -370,12 +371,19 @@ def test_what_was_held_back_is_corrected_by_one_click_each_and_the_model_made_an
         press(models, really)
         says(models, "explanation", f"Kept in the set {SET} as {kept}")
     assert Counter(each["label"] for each in room.teacher.examples(SET)) == {"wave": 6, "goggles": 5, NONE: 1}
+    go_to(models, "models")
+    models.reload()
+    says(models, "model-list", "In use: model")
+    go_to(models, "live")
+    room.page.give(frames[-1], held_back(frames, 7))
+    models.get_by_role("button", name="like wave, but not like enough: 0.7, not told").click()
     press(models, "Update the model (2 corrections)")
     wait_until(lambda: len(room.teacher.jobs) == 2, "it is updated")
     [model] = room.teacher.ask("list")["models"]
     assert room.teacher.jobs[-1].arguments.model.name == f"{model['id']}.npz"
     room.end_job(trained())
     says(models, "explanation", "The new model is in use within two seconds.")
+    models.get_by_role("button", name="Update the model").wait_for(state="hidden")
 
 
 def test_a_correction_that_is_refused_is_told(room: Lesson, models: Any) -> None:
@@ -477,14 +485,14 @@ def test_names_that_are_none_are_refused_and_that_is_shown(room: Lesson, teach: 
 
 def test_what_is_no_name_in_a_file_dropped_is_replaced(room: Lesson, teach: Any) -> None:
     drop(teach, f"../{MARKUP}.mp4", 1)
-    wait_until(lambda: (room.teacher.folder / "uploads/.sent").exists() and any(sent(room)), "it is sent")
+    wait_until(lambda: any(sent(room)), "it is sent")
     (name,) = [path.name for path in sent(room)]
     assert re.fullmatch(r"\w+-img src_x onerror_alert_1__\.mp4", name)
     says(teach, "video", "cannot be a name")
 
 
 def sent(room: Lesson) -> list[Path]:
-    return sorted((room.teacher.folder / "uploads/.sent").glob("[!.]*"))
+    return sorted(room.teacher.folder.glob("uploads/.sent/*/[!.]*"))
 
 
 def test_a_page_whose_trainer_is_silent_says_so(open_page: Open, scene: Any) -> None:

@@ -17,7 +17,10 @@ from actum_model_trainer.evaluation import segment_labels
 from actum_model_trainer.sample_reading import samples_from
 from model_trainer import recent_frames
 from model_trainer.folds import folds_of
+from model_trainer.job import MODEL
+from model_trainer.job_process import Ended
 from model_trainer.recent_frames import SLACK_NS, RecentFrames
+from recognisers import tiny_model
 from repeating import FRAME_NS, Stream
 from teaching import WAVES, Teacher
 from unmarked import spotting_model
@@ -109,6 +112,34 @@ def test_an_event_is_corrected_once(teacher: Teacher) -> None:
             teacher.ask("correct", **event(label=label))
     teacher.ask("correct", **event(start_ns=5 * SECOND_NS, end_ns=7 * SECOND_NS))
     assert len(teacher.examples()) == 2
+
+
+def test_corrections_are_listed_until_a_model_is_in_use_whose_training_began_after_them(teacher: Teacher) -> None:
+    def corrections(seconds: int) -> int:
+        teacher.passed_ns += seconds * SECOND_NS
+        [kitchen] = teacher.ask("list")["sets"]
+        return kitchen["corrections"]
+
+    teacher.ask("train", set="kitchen")
+    end_training(teacher)
+    teacher.teach("wave", WAVES[:2])
+    assert corrections(1) == 0
+    teacher.ask("correct", **event(label="wave"))
+    assert corrections(1) == 1
+    teacher.ask("train", set="kitchen")
+    assert corrections(1) == 1
+    teacher.ask("correct", **event(start_ns=5 * SECOND_NS, end_ns=7 * SECOND_NS))
+    end_training(teacher)
+    teacher.begin()
+    assert corrections(0) == 1, "of the two, the one that was made during the training"
+
+
+def end_training(teacher: Teacher) -> None:
+    """Leave a model where the training leaves it, and put the model into use."""
+    tiny_model().save(teacher.jobs[-1].arguments.folder / MODEL)
+    teacher.jobs[-1].news = Ended({"model": tiny_model().id, "scores": {}})
+    teacher.tick()
+    teacher.ask("activate", model=tiny_model().id)
 
 
 def test_a_correction_that_cannot_be_stored_leaves_nothing(teacher: Teacher, monkeypatch: pytest.MonkeyPatch) -> None:

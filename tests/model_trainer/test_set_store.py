@@ -59,7 +59,7 @@ def test_a_newer_take_has_a_higher_number_also_where_one_is_missing_or_the_clock
 def test_a_take_with_more_examples_than_can_be_changed_at_once_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("model_trainer.set_store.MOST_SEGMENTS", 1)
+    monkeypatch.setattr("model_trainer.stored_set.MOST_SEGMENTS", 1)
     store = SetStore(tmp_path, lambda: 1)
     store.create("waves")
     with store.recorder("anna", "action") as recorder:

@@ -19,9 +19,11 @@ from actum.commands import Refusal
 from actum.messages import segment_marks
 from actum.recorder import Recorder
 from actum.recording import Recording
+from actum.run_folder import CLAIM
 from model_trainer import upload_store
 from model_trainer.job_process import Ended, Progressing
 from model_trainer.set_store import SetStore
+from model_trainer.stored_set import SetReader
 from people import FRAME_NS
 from performers import TINY_PAPER
 from recognisers import tiny_model
@@ -79,7 +81,8 @@ def test_a_users_file_survives_each_start_and_each_command(teacher: Teacher, nam
 def test_what_the_service_left_unfinished_goes_with_the_next_start(teacher: Teacher) -> None:
     send(teacher)
     left = [
-        "uploads/.sent/clip.mp4",
+        "uploads/.sent/killed/clip.mp4",
+        "uploads/.sent/killed/.running",
         "jobs/job-7.work/model.npz",
         "sets/.making/1.mcap.part",
         "sets/.leaving-17/set.json",
@@ -267,13 +270,13 @@ def test_whatever_vanishes_commands_are_refused_and_the_service_goes_on(teacher:
 def test_a_take_that_vanishes_between_listing_and_reading_is_told(
     teacher: Teacher, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    read = SetStore._take
+    read = SetReader.take
 
-    def vanish(store: SetStore, path: Path) -> Any:
+    def vanish(reader: SetReader, path: Path) -> Any:
         path.unlink()
-        return read(store, path)
+        return read(reader, path)
 
-    monkeypatch.setattr(SetStore, "_take", vanish)
+    monkeypatch.setattr(SetReader, "take", vanish)
     (listed,) = teacher.ask("list")["sets"]
     assert listed["takes"] == [] and "take-0001.mcap" in listed["unreadable"][0]
 
@@ -375,8 +378,16 @@ def test_uploads_never_take_more_than_the_total(
         except Refusal as refusal:
             assert "bytes" in str(refusal)
         sizes = {each: total for each, total in sizes.items() if not (each == name and last)}
-        there = sum(file.stat().st_size for file in tmp_path.rglob("*") if file.is_file())
+        there = sum(file.stat().st_size for file in tmp_path.rglob("*") if file.is_file() and file.name != CLAIM)
         assert there <= 100
+
+
+def test_uploads_wait_for_their_import_while_another_trainer_starts_in_the_folder(teacher: Teacher) -> None:
+    send(teacher, data=b"mine")
+    other = Teacher(teacher.folder)
+    send(other, data=b"another of that name")
+    teacher.ask("import_video", set="kitchen", upload="clip.mp4", label="nod")
+    assert teacher.jobs[-1].arguments.video.read_bytes() == b"mine"
 
 
 def test_too_many_uploads_are_refused(teacher: Teacher, monkeypatch: pytest.MonkeyPatch) -> None:

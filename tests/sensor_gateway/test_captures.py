@@ -9,7 +9,7 @@ import pytest
 
 from actum.joining import PAUSE_NS
 from actum.node import SECOND_NS
-from camera_videos import write_video
+from camera_videos import FRAMES_PER_SECOND, write_video
 from live import wait_until
 from sensor_gateway.cameras import capture_of
 from sensor_gateway.captured_picture import Picture
@@ -39,7 +39,9 @@ class Film:
         return (True, np.zeros((48, 64, 3), np.uint8)) if self.at < len(self.times_ms) else (False, None)
 
     def get(self, what: int) -> float:
-        return {cv2.CAP_PROP_POS_MSEC: self.times_ms[self.at], cv2.CAP_PROP_FPS: 25.0}[what]
+        if what == cv2.CAP_PROP_POS_MSEC:
+            return self.times_ms[self.at]
+        return {cv2.CAP_PROP_FRAME_COUNT: len(self.times_ms), cv2.CAP_PROP_FPS: 25.0}[what]
 
     def release(self) -> None:
         pass
@@ -60,6 +62,16 @@ def test_frames_whose_times_a_file_does_not_tell_come_one_interval_apart(
 ) -> None:
     monkeypatch.setattr("sensor_gateway.devices.video.cv2.VideoCapture", lambda _path: Film(*told_ms))
     assert [picture.stamp_ns for picture in pictures_of(Path("a.h264"))] == [ms * 1_000_000 for ms in stamped_ms]
+
+
+def test_a_file_whose_end_is_missing_is_named_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    whole, half = (write_video(tmp_path / name, 20, (640, 480)) for name in ("whole.avi", "half.avi"))
+    half.write_bytes(half.read_bytes()[: half.stat().st_size // 2])
+    for _ in range(2):
+        read = [len(list(pictures_of(path))) for path in (whole, half)]
+    assert read[0] == 20 > read[1]
+    last_s = (read[1] - 1) / FRAMES_PER_SECOND
+    assert caplog.messages == [f"{half} should last 1.9 s, but its images end after {last_s} s: copy the file again"]
 
 
 def test_what_is_no_video_is_named_and_is_a_lost_camera(tmp_path: Path) -> None:

@@ -13,14 +13,8 @@ from rendered_bodies import landmarks_of, person
 from sensor_gateway.camera_source import CameraSource
 from sensor_gateway.devices.capture import CameraLostError
 from sensor_gateway.devices.file_capture import FileCapture
-from sensor_gateway.devices.realsense import (
-    Aligner,
-    RealSenseCapture,
-    RealSenseError,
-    lens_of,
-    library,
-    recorded_pictures,
-)
+from sensor_gateway.devices.realsense import RealSenseCapture, RealSenseError, library, recorded_pictures
+from sensor_gateway.devices.realsense_frames import Aligner, lens_of
 from sensor_gateway.devices.video import VideoError
 from sensor_gateway.lens import Lens
 from sensor_gateway.optics import DepthOptics

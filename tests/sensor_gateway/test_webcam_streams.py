@@ -32,7 +32,7 @@ class Blind:
 
 @pytest.fixture
 def camera() -> Iterator[str]:
-    """A camera that gives a few pictures to each who asks, and then hangs up."""
+    """A camera that gives a few pictures to each who asks, from the middle on at half the resolution, and hangs up."""
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self) -> None:
@@ -40,8 +40,9 @@ def camera() -> Iterator[str]:
             self.send_header("Content-Type", "multipart/x-mixed-replace; boundary=picture")
             self.end_headers()
             rng = np.random.default_rng(0)
-            for _ in range(PICTURES):
-                data = cv2.imencode(".jpg", rng.integers(0, 255, (48, 64, 3)).astype(np.uint8))[1].tobytes()
+            for number in range(PICTURES):
+                size = (48, 64, 3) if number < PICTURES / 2 else (24, 32, 3)
+                data = cv2.imencode(".jpg", rng.integers(0, 255, size).astype(np.uint8))[1].tobytes()
                 head = f"--picture\r\nContent-Type: image/jpeg\r\nContent-Length: {len(data)}\r\n\r\n"
                 self.wfile.write(head.encode() + data + b"\r\n")
                 stopped.wait(BETWEEN_S)
@@ -74,7 +75,7 @@ def test_a_stream_that_ends_is_lost_and_comes_back_by_itself(camera: str) -> Non
             elif isinstance(message, Image):
                 sizes.add((message.width, message.height))
     frames.close()  # type: ignore[attr-defined]
-    assert sizes == {(64, 48)}
+    assert sizes == {(64, 48)}, "OpenCV scales all pictures to the size of the first"
     assert told[0].valid
     assert {skeleton.reason for skeleton in told} == {None, "camera lost: it gives no more pictures"}
     assert source.counters.state == "running"

@@ -57,6 +57,18 @@ def test_a_mark_without_a_classifier_ends_with_code_1_and_says_why(running: Syst
     assert "no service receives marks on actum/kinect0/segment, so the start mark was not sent" in marking.stderr
 
 
+def test_watching_a_sensor_without_services_names_the_sensors_that_have_some(running: System) -> None:
+    running.start_router()
+    watch = running.start("actum_command", "watch", "--json", "--sensor", "nobody")
+    alone = "waiting for messages of the sensor nobody, for which no service runs; "
+    wait_until(lambda: f"{alone}no service of any other sensor runs either" in watch.said(), "it waits alone")
+    running.start("pose_preprocessor")
+    with running.client() as client:
+        running.wait_for_services(client, "pose_preprocessor")
+        other = running.start("actum_command", "watch", "--sensor", "nobody")
+        wait_until(lambda: f"{alone}services run for kinect0" in other.said(), "it names the other sensor")
+
+
 def test_without_a_router_a_command_says_what_to_do(running: System) -> None:
     asked = running.actum("doctor")
     assert asked.returncode == 1

@@ -13,11 +13,10 @@ from pathlib import Path
 import pytest
 
 from actum.settings import ServiceSettings
-from authorities import ENDED, OPENSSL, Authority
+from authorities import Authority
 from live import System, free_endpoint, wait_until
 
 pytestmark = pytest.mark.system
-with_openssl = pytest.mark.skipif(OPENSSL is None, reason="openssl makes the certificates")
 
 
 def said(running: System, connect: str, credentials: Path | None = None) -> str:
@@ -105,7 +104,6 @@ def authority(tmp_path: Path) -> Authority:
     return Authority(tmp_path / "authority")
 
 
-@with_openssl
 def test_who_shows_what_the_router_knows_is_let_in(running: System, authority: Authority) -> None:
     running.variables["ACTUM_CONNECT"] = started(running, authority.role("router"))
     running.variables["ACTUM_CREDENTIALS"] = str(authority.role("viewer"))
@@ -113,7 +111,6 @@ def test_who_shows_what_the_router_knows_is_let_in(running: System, authority: A
 
 
 @pytest.mark.thorough
-@with_openssl
 def test_a_certificate_of_another_authority(running: System, authority: Authority, tmp_path: Path) -> None:
     endpoint = started(running, authority.role("router"))
     stranger = Authority(tmp_path / "other").role("stranger")
@@ -129,7 +126,6 @@ def test_a_certificate_of_another_authority(running: System, authority: Authorit
     assert refused.startswith(f"the router does not trust the authority that signed {shown}")
 
 
-@with_openssl
 def test_no_certificate(running: System, authority: Authority, tmp_path: Path) -> None:
     endpoint = started(running, authority.role("router"))
     without = tmp_path / "without.json5"
@@ -140,27 +136,23 @@ def test_no_certificate(running: System, authority: Authority, tmp_path: Path) -
     assert said(running, endpoint).startswith("the router requires a certificate")
 
 
-@with_openssl
 def test_an_expired_certificate(running: System, authority: Authority) -> None:
     endpoint = started(running, authority.role("router"))
-    viewer = authority.role("viewer", *ENDED)
+    viewer = authority.role("viewer", days_left=-1)
     assert said(running, endpoint, viewer).startswith(f"{viewer / 'certificate.pem'} expired on ")
 
 
-@with_openssl
 def test_an_expired_certificate_of_the_router(running: System, authority: Authority) -> None:
-    endpoint = started(running, authority.role("router", *ENDED))
+    endpoint = started(running, authority.role("router", days_left=-1))
     assert said(running, endpoint, authority.role("viewer")).startswith("the router's certificate expired on ")
 
 
-@with_openssl
 def test_a_router_of_another_name(running: System, authority: Authority) -> None:
     endpoint = started(running, authority.role("router", host="kinect-host"))
     refused = said(running, endpoint, authority.role("viewer"))
     assert refused.startswith("the router's certificate is for kinect-host, not for localhost")
 
 
-@with_openssl
 def test_a_wrong_password(running: System, authority: Authority) -> None:
     router, viewer = authority.role("router"), authority.role("viewer")
     (router / "users.txt").write_text("viewer:right\n")
@@ -172,7 +164,6 @@ def test_a_wrong_password(running: System, authority: Authority) -> None:
 
 
 @pytest.mark.thorough
-@with_openssl
 def test_one_speaks_tls_and_the_other_does_not(running: System, authority: Authority) -> None:
     endpoint = started(running, authority.role("router"))
     assert said(running, endpoint.replace("tls/", "tcp/")).startswith("the router requires TLS: set ACTUM_CONNECT=tls/")

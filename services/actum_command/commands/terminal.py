@@ -64,7 +64,17 @@ def failing_on(*errors: type[Exception]) -> Iterator[None]:
     try:
         yield
     except errors as error:
-        fail(str(error))
+        fail(_in_words(error))
+
+
+def _in_words(error: Exception) -> str:
+    """Return an error's text; where the operating system gave the error, without its number and with what to do."""
+    if not isinstance(error, OSError) or not str(error).startswith("["):
+        return str(error)
+    path = error.filename2 or error.filename
+    if path is None:
+        return f"{error.strerror}: solve this problem, then try again"
+    return f"{path} cannot be used ({error.strerror}): solve this problem, or name another file or folder"
 
 
 def connect(wait_s: float = 5.0, here: ServiceSettings | None = None) -> Client:

@@ -1,7 +1,8 @@
 """`actum watch`: what happens on a sensor's keys, one line per message."""
 
+import threading
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -21,6 +22,8 @@ from actum_command.intent_lines import IntentLines
 WATCHABLE = {topic.leaf.removesuffix("/{}"): topic for topic in keys.TOPICS}
 """All topics, by the name that a user gives them."""
 BY_DEFAULT = [keys.EVENT]
+PATIENCE_S = 5.0
+"""How long (s) the services of the sensor may take to start before their absence is reported."""
 
 
 def watch(
@@ -71,7 +74,7 @@ def watch(
     if recorded:
         _show_recorded(recorded, wanted, printed)
         return
-    with connect() as client:
+    with connect() as client, _reporting_absence(client):
         try:
             if console.is_terminal and not as_json and {keys.EVENT, keys.ACTION} & {*wanted}:
                 _show_above_what_goes_on(client, wanted, printed)
@@ -80,6 +83,27 @@ def watch(
                     printed.take(received)
         except KeyboardInterrupt:
             return
+
+
+@contextmanager
+def _reporting_absence(client: Client) -> Iterator[None]:
+    """Return a context in which it is reported, after a while, that no service of the client's sensor runs."""
+
+    def report() -> None:
+        sensors = client.sensors()
+        if client.sensor not in sensors:
+            there = (
+                f"services run for {', '.join(sensors)}" if sensors else "no service of any other sensor runs either"
+            )
+            _remark(f"waiting for messages of the sensor {client.sensor}, for which no service runs; {there}")
+
+    timer = threading.Timer(PATIENCE_S, report)
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+        timer.join()
 
 
 def _received_on(client: Client, topics: list[keys.Topic]) -> Iterator[Received]:
@@ -125,7 +149,7 @@ def _show_recorded(named: list[Path], wanted: list[keys.Topic], printed: Printed
 
 
 def _remark(text: str) -> None:
-    """Print a line about the recordings where it does not get among their messages."""
+    """Print a line where it does not get among the messages."""
     errors.print(text, markup=False, soft_wrap=True, style="yellow")
 
 

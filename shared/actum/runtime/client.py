@@ -147,14 +147,18 @@ class Client:
 
     def alive(self) -> list[str]:
         """List the liveliness tokens of this sensor's services."""
-        return self._tokens("alive")
+        return self._tokens(self.sensor, "alive")
+
+    def sensors(self) -> list[str]:
+        """List the sensors of all services whose liveliness tokens this program may see."""
+        return sorted({token.split("/")[1] for token in self._tokens("*", "alive")})
 
     def members(self) -> list[str]:
         """List the liveliness tokens of the instances that share this sensor."""
-        return self._tokens("member")
+        return self._tokens(self.sensor, "member")
 
-    def _tokens(self, role: str) -> list[str]:
-        replies = self._session.liveliness().get(f"{keys.BASE}/{self.sensor}/{role}/**", timeout=1.0)
+    def _tokens(self, sensor: str, role: str) -> list[str]:
+        replies = self._session.liveliness().get(f"{keys.BASE}/{sensor}/{role}/**", timeout=1.0)
         return sorted(str(reply.ok.key_expr) for reply in replies if reply.ok is not None)
 
     def infos(self) -> list[Info]:

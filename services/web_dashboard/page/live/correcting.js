@@ -8,8 +8,8 @@ import { trainer } from "../trainer.js";
 export class Correcting {
   // `held()` is called as somebody turns to the buttons: from then on they have to be those of the same answer.
   constructor(held) {
-    // corrected: what became of each segment; since: by set, the corrections that its model does not know yet.
-    Object.assign(this, { segment: null, corrected: new Map(), since: new Map(), asking: false, job: null, filled: null });
+    // corrected: what became of each segment; job: the id of the training that was started here.
+    Object.assign(this, { segment: null, corrected: new Map(), asking: false, job: null, filled: null });
     this.line = outcome();
     this.person = suggesting("corrected-person");
     this.other = element("select");
@@ -54,10 +54,9 @@ export class Correcting {
       this.other.replaceChildren(...labels.map((label) => element("option", { value: label }, label)));
     }
     this.fillIn(set);
-    const since = this.since.get(set.name) ?? 0;
-    this.training.element.hidden = !this.job || this.job.id !== trainer.now?.job?.id;
-    this.update.hidden = !since || trainer.now?.job?.state === "running";
-    this.update.textContent = `Update the model (${counted(since, "correction")})`;
+    this.training.element.hidden = !this.job || this.job !== trainer.now?.job?.id;
+    this.update.hidden = !set.corrections || trainer.now?.job?.state === "running";
+    this.update.textContent = `Update the model (${counted(set.corrections, "correction")})`;
   }
 
   // Suggests who it may be; fills the only person in once for each set, so that it can be cleared.
@@ -77,25 +76,20 @@ export class Correcting {
     this.asking = false;
     if (reply) {
       this.corrected.set(segment.id, `Kept in the set ${set.name} as ${label ? `an example of ${label}` : "none of the actions"}.`);
-      this.since.set(set.name, (this.since.get(set.name) ?? 0) + 1);
       if (this.segment === segment) say(this.line, this.corrected.get(segment.id));
     }
     this.look();
   }
 
   async train() {
-    const set = this.set.name;
-    const known = this.since.get(set);
-    const job = await this.training.start("train", { set, update: trainer.now.model });
-    if (job) this.job = { id: job.id, set, known };
+    const job = await this.training.start("train", { set: this.set.name, update: trainer.now.model });
+    if (job) this.job = job.id;
     this.look();
   }
 
   // Puts the model into use that was trained here; other panels train models, too.
   async ended({ id, result }) {
-    if (id !== this.job?.id || !result) return;
-    const { set, known } = this.job;
-    this.since.set(set, this.since.get(set) - known);
+    if (id !== this.job || !result) return;
     await attempt(this.line, () => trainer.ask("activate", { model: result.model }), "The new model is in use within two seconds.");
     this.look();
   }
