@@ -2,10 +2,12 @@
 
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
 from actum.atomic_file import PRIVATE_FOLDER
+from actum.mcap_file import McapFile
 from actum.messages import Message
 from actum.node import SECOND_NS
 from actum.recorder import StoredRecorder
@@ -106,6 +108,12 @@ class EventFiles:
                     file.unlink()
             except (RecordingError, FileExistsError) as error:
                 yield str(error)
+
+    def newest(self) -> Iterator[tuple[str, bytes]]:
+        """Yield key and payload of each message in the newest two finished files, without what cannot be read."""
+        for file in self._files(finished=True)[-2:]:
+            with suppress(RecordingError):
+                yield from ((stored.key, stored.payload) for stored in McapFile(file).stored())
 
     def _abandon(self) -> None:
         """Leave the open file unfinished: the next message begins another one, and the next start finishes this."""

@@ -6,6 +6,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from actum import keys, steady_clock
+from actum.codec import encode
 from actum.messages import Action, Event, Message, Segment
 from actum.node import Counters, Tick
 from actum.runtime import run
@@ -31,6 +32,7 @@ class EventRecorder:
         self._files, self._received_ns, self._now_ns = files, received_ns, 0
         self._marks = UnstampedMarks()
         self._recovered = False
+        self._before = frozenset[int]()
 
     def handle(self, message: Message | Tick) -> list[Message]:
         """Store one message, or do on a tick what has become due; nothing is put."""
@@ -39,6 +41,7 @@ class EventRecorder:
                 self._recovered = True
                 for problem in self._files.recover():
                     self.counters.reject("unreadable_history", problem)
+                self._before = frozenset(map(hash, self._files.newest()))
             match message:
                 case Tick():
                     self._tick(message.monotonic_ns)
@@ -81,6 +84,10 @@ class EventRecorder:
                 self._write(mark)
 
     def _write(self, message: Message) -> None:
+        """Store a message, unless it has been stored before this process: the last ones come once more."""
+        frame = encode(message)
+        if hash((frame.key, frame.payload)) in self._before:
+            return
         try:
             self._files.write(message, self._received_ns(), self._now_ns)
             self.counters.state = State.RUNNING

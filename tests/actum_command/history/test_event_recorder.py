@@ -218,6 +218,19 @@ def test_what_a_killed_process_left_is_finished_by_the_next(tmp_path: Path) -> N
     after.recorder.close()
 
 
+def test_what_the_process_before_has_stored_is_not_stored_once_more(tmp_path: Path) -> None:
+    told = mark("start", 1, "a"), event("a", 1, 2), event("a", 3, 4)
+    stored = [message.model_copy(update={"seq": number}) for number, message in enumerate(told)]
+    before = History(tmp_path)
+    before.receive(*stored)
+    before.recorder.close()
+    after = History(tmp_path)
+    after.receive(*stored[1:], event("a", 5, 6))
+    after.recorder.close()
+    assert after.said() == ["a", "a", "a", "a"]
+    assert len({message.stamp_ns for message in after.stored()}) == 4
+
+
 def test_what_another_process_is_writing_is_left_to_it(tmp_path: Path) -> None:
     other = History(tmp_path)
     other.receive(event("its", 1, 2))
