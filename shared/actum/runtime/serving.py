@@ -7,7 +7,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from typing import Protocol, TypeVar
 
 import zenoh
@@ -106,11 +106,7 @@ def run(settings_type: type[S], build: Callable[[S], Node], flags: Sequence[str]
     Where the settings name several sensors, there is a node for each of them, and one session. Where these are shared
     with other processes, a node works only while its sensor is this process's.
     """
-
-    def of_each_sensor(settings: S) -> list[tuple[Node, S]]:
-        return [(build(own), own) for own in settings.of_each_sensor]
-
-    settings, nodes = configured(settings_type, of_each_sensor, flags)
+    settings, nodes = configured(settings_type, _for_each_sensor(build), flags)
     shares = isinstance(settings, SharedSettings) and settings.share
     live([_sharing(node, build, own) if shares else NodeService(node, own) for node, own in nodes], settings)
 
@@ -126,9 +122,22 @@ def run_source(settings_type: type[S], build: Callable[[S], Source]) -> None:
 
 
 def run_front(settings_type: type[S], build: Callable[[S], Front]) -> None:
-    """Run a front as this process's service until SIGTERM or SIGINT."""
-    settings, front = configured(settings_type, build)
-    live([FrontService(front, settings)], settings, front.serving)
+    """Run a front for each sensor as this process's service until SIGTERM or SIGINT."""
+    settings, fronts = configured(settings_type, _for_each_sensor(build))
+
+    @contextmanager
+    def serving() -> Iterator[None]:
+        with ExitStack() as threads:
+            for front, _ in fronts:
+                threads.enter_context(front.serving())
+            yield
+
+    live([FrontService(front, own) for front, own in fronts], settings, serving)
+
+
+def _for_each_sensor(build: Callable[[S], N]) -> Callable[[S], list[tuple[N, S]]]:
+    """Return what builds one for each sensor that settings name, and returns it with its own settings."""
+    return lambda settings: [(build(own), own) for own in settings.of_each_sensor]
 
 
 def configured(settings_type: type[S], build: Callable[[S], N], flags: Sequence[str] | None = None) -> tuple[S, N]:
