@@ -135,8 +135,8 @@ def _set(segmentation: Segmentation) -> Iterator[tuple[str, float | dict[str, fl
     yield from ((name, value) for name, value in zip(SEARCH_SETTINGS, values, strict=True) if value)
 
 
-def _as_toml(value: float | dict[str, float] | list[str]) -> str:
+def _as_toml(value: float | str | dict[str, float] | list[str]) -> str:
     """Write a value in TOML, whose strings are JSON's."""
     if isinstance(value, dict):
-        return f"{{{', '.join(f'{json.dumps(name)} = {seconds}' for name, seconds in value.items())}}}"
+        return f"{{{', '.join(f'{_as_toml(name)} = {seconds}' for name, seconds in value.items())}}}"
     return json.dumps(value, ensure_ascii=False)
