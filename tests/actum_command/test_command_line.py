@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 
 from actum import __version__
 from actum.messages import Segment
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
@@ -175,6 +176,27 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     command = ["evaluate", tmp_path / "m.npz", tmp_path / "a.mcap", "--json", report]
     assert "accuracy" in invoke(*command).output
     assert '"predictions"' in report.read_text()
+
+
+@pytest.mark.usefixtures("quick_training")
+def test_an_evaluation_warns_of_people_whom_the_model_was_trained_on(examples: Path, tmp_path: Path) -> None:
+    model, nameless = tmp_path / "m.npz", tmp_path / "b.mcap"
+    assert invoke("train", examples, "-o", model).exit_code == 0
+    assert invoke("simulate", tmp_path / "other.mcap", "--actor", "1", "--repetitions", "1").exit_code == 0
+    write_recording(nameless, Recording(tmp_path / "other.mcap").messages(), person="", source="test")
+    said = {
+        name: " ".join(invoke("evaluate", *arguments).output.split())
+        for name, arguments in {
+            "same": (model, examples),
+            "other": (model, tmp_path / "other.mcap"),
+            "nameless": (model, nameless),
+            "left out": ("--leave-one-person-out", examples, nameless),
+        }.items()
+    }
+    assert "the model was trained on person simulated 0, whom it recognises better than others" in said["same"]
+    assert "accuracy" in said["other"] and "person" not in said["other"]
+    assert "a recording names no person" in said["nameless"]
+    assert "a recording names no person" in said["left out"]
 
 
 @pytest.fixture

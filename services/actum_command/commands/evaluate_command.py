@@ -40,6 +40,7 @@ from actum_model_trainer.foreseeing.recorded import recorded_in
 from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.report import report
 from actum_model_trainer.side_by_side import at_most
+from actum_model_trainer.tuning.doubts import of_people
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, Preset
@@ -155,6 +156,7 @@ def _evaluate_segments(
             "recordings with 'actum label'"
         )
     console.print(report(result, time.monotonic() - began_s))
+    _say_doubts(model, recordings)
     if json_file is not None:
         write_text(json_file, json.dumps(result.as_json(), indent=1))
 
@@ -184,8 +186,16 @@ def _evaluate_continuously(
         fail("the given recordings contain no skeletons: give recordings of a person")
     scores = scores_of(found)
     console.print(continuous_report(scores, time.monotonic() - began_s))
+    _say_doubts(model, recordings)
     if json_file is not None:
         write_text(json_file, json.dumps(found.as_json() | {"scores": scores.as_json()}, indent=1))
+
+
+def _say_doubts(model: Model | None, recordings: Sequence[Recording]) -> None:
+    """Warn where the scores may be better than those of new people."""
+    trained = () if model is None else model.metadata.persons
+    for doubt in of_people({recording.person for recording in recordings}, trained):
+        say(doubt, style="yellow")
 
 
 def _refuse_with_intent(context: typer.Context, given: Given) -> None:

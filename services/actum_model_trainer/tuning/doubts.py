@@ -1,7 +1,7 @@
 """How far a choice of settings can be trusted: how sure its rate of false alarms is, and what speaks against it."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from actum_model_trainer.continuous.scoring import FALSE_ALARMS_PER_MIN, ContinuousScores
 from actum_model_trainer.tuning.weighing import Weighed
@@ -29,14 +29,7 @@ def doubts(
     model: Model, weighed: Sequence[Weighed], scores: ContinuousScores, most_per_min: float | None
 ) -> Iterator[str]:
     """Yield what speaks against trusting the scores of the settings that were chosen on these recordings."""
-    persons = {each.trial.person for each in weighed}
-    if seen := sorted(persons & set(model.metadata.persons) - {""}):
-        yield (
-            f"the model was trained on person {', '.join(seen)}, whom it recognises better than others: "
-            "tune on recordings of somebody else"
-        )
-    if "" in persons:
-        yield "a recording names no person: if the model was trained on that person, the result is too good"
+    yield from of_people({each.trial.person for each in weighed}, model.metadata.persons)
     yield from _too_little(scores, FALSE_ALARMS_PER_MIN if most_per_min is None else most_per_min)
     if model.background_s == 0:
         yield (
@@ -46,6 +39,17 @@ def doubts(
     known = set(model.labels)
     if unknown := sorted({label for label, own in scores.per_action.items() if own.truths} - known):
         yield f"the model does not know {', '.join(unknown)}, which the recordings contain: each one counts as missed"
+
+
+def of_people(tested: Collection[str], trained: Collection[str]) -> Iterator[str]:
+    """Yield where the people who are tested are, or may be, those whom the model was trained on."""
+    if seen := sorted(set(tested) & set(trained) - {""}):
+        yield (
+            f"the model was trained on person {', '.join(seen)}, whom it recognises better than others: "
+            "use recordings of somebody else"
+        )
+    if "" in tested:
+        yield "a recording names no person: if the model was trained on that person, the result is too good"
 
 
 def _too_little(scores: ContinuousScores, wanted_per_min: float) -> Iterator[str]:
