@@ -208,6 +208,19 @@ def quick_training(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("quick_training")
+def test_an_evaluation_names_the_actions_that_no_model_could_recognise(examples: Path, tmp_path: Path) -> None:
+    model, other = tmp_path / "m.npz", tmp_path / "other.mcap"
+    assert invoke("train", examples, "-o", model).exit_code == 0
+    assert invoke("simulate", other, "--actor", "1", "--repetitions", "2").exit_code == 0
+    evaluated = ("evaluate", model, other), ("evaluate", "--leave-one-person-out", examples, other)
+    assert not any("counts as missed" in invoke(*command).output for command in evaluated)
+    assert invoke("label", "relabel", other, "1", "wave").exit_code == 0
+    given, left_out = (" ".join(invoke(*command).output.split()) for command in evaluated)
+    assert "the model does not know wave, which the recordings contain: each one counts as missed" in given
+    assert "only one person does wave, which the model that is tested on this person therefore does not" in left_out
+
+
+@pytest.mark.usefixtures("quick_training")
 def test_training_holds_the_examples_against_the_background_that_is_named(examples: Path, tmp_path: Path) -> None:
     def trained(*background: object) -> str:
         flags = [flag for each in background for flag in ("--background", each)]
