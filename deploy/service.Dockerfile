@@ -34,7 +34,7 @@ ARG PACKAGES=""
 RUN if [ -n "${PACKAGES}" ]; then apt-get install --yes -qq --no-install-recommends ${PACKAGES} > /dev/null; fi \
     && groupadd --gid 10001 actum \
     && useradd --uid 10001 --gid actum --no-create-home actum \
-    && install --directory --owner=actum /models /state \
+    && install --directory --owner=actum /history /models /state \
     && cd /usr/local/lib/python3.11 \
     && rm -rf site-packages/* config-3.11* distutils ensurepip idlelib lib2to3 pydoc_data tkinter turtledemo \
     && rm -rf /usr/local/bin/pip* /usr/local/include \

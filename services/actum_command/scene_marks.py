@@ -37,14 +37,17 @@ def write_examples(
 
 
 def mark_truth(client: Client, stop: threading.Event) -> None:
-    """Put the mark of each ground-truth message, until stopped."""
+    """Put the mark of each ground-truth message, until stopped; no end of an action that had begun before."""
+    started: set[str] = set()
     truths = client.listen(keys.key(keys.TRUTH, client.sensor))
     while not stop.is_set() and not client.wait_for_subscriber(keys.SEGMENT, SUBSCRIBER_POLL_S):
         pass
     while not stop.wait(POLL_S):
         while (received := truths.receive()) is not None:
-            if isinstance(received.message, Truth):
-                client.put(mark_of(received.message))
+            truth = received.message
+            if isinstance(truth, Truth) and (truth.kind == "start" or truth.segment_id in started):
+                started ^= {truth.segment_id}
+                client.put(mark_of(truth))
 
 
 def mark_of(truth: Truth) -> Segment:

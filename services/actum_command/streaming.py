@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Iterator, Sequence
+from itertools import tee
 from typing import Any, Protocol
 
 from actum import keys, steady_clock
@@ -58,16 +59,21 @@ def _store(listening: Sequence[Listening], recorder: Storing) -> bool:
 def put_all(client: Client, recordings: Sequence[Recording], speed: float, stop: threading.Event) -> int:
     """Put recordings at a multiple of their pace, and return how many messages were put.
 
-    An empty frame of the new session goes before them, so that all services reset before the first mark.
+    An empty frame of the new session goes before them, so that all services reset before the first mark. Its number is
+    that before the first frame's, so that none counts as lost between.
 
     Raises:
         RecordingError: a recording is damaged.
     """
     session_id, start_ns = f"play-{client.run}", steady_clock.now_ns()
-    client.put(Skeleton(stamp_ns=start_ns - SECOND_NS, sensor=client.sensor, agents=[], session_id=session_id))
+    played, ahead = tee(schedule(recordings, session_id, start_ns, client.sensor))
+    first = next((message.seq for message in ahead if isinstance(message, Skeleton)), None)
+    del ahead  # it would keep all that is played in memory
+    seq = None if first is None else max(first - 1, 0)
+    client.put(Skeleton(stamp_ns=start_ns - SECOND_NS, seq=seq, sensor=client.sensor, agents=[], session_id=session_id))
     stop.wait(LEAD_IN_S)
     pace, count = Pace(speed), 0
-    for message in schedule(recordings, session_id, start_ns, client.sensor):
+    for message in played:
         if not pace.wait(message.stamp_ns, stop):
             break
         client.put(message)

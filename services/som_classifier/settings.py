@@ -1,5 +1,6 @@
 """Settings of the classifier."""
 
+import csv
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -14,8 +15,15 @@ Seconds = Annotated[FiniteFloat, Field(ge=0)]
 
 
 def _names(value: Any) -> Any:
-    """Split `wave,clap` at the commas; return what is no text unchanged."""
-    return [name.strip() for name in value.split(",") if name.strip()] if isinstance(value, str) else value
+    """Split `wave,"up, down"` at the commas outside quotes, as in CSV; return what is no text unchanged."""
+    if not isinstance(value, str):
+        return value
+    return [
+        name.strip()
+        for row in csv.reader(value.splitlines(True), skipinitialspace=True)
+        for name in row
+        if name.strip()
+    ]
 
 
 def _pairs(value: Any) -> Any:

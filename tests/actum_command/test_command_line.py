@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 
 from actum import __version__
 from actum.messages import Segment
+from actum.recorder import write_recording
 from actum.recording import Recording
 from actum.runtime import RouterUnreachableError
 from actum.settings import ServiceSettings
@@ -177,12 +178,46 @@ def test_training_and_evaluating_on_simulated_examples(tmp_path: Path) -> None:
     assert '"predictions"' in report.read_text()
 
 
+@pytest.mark.usefixtures("quick_training")
+def test_an_evaluation_warns_of_people_whom_the_model_was_trained_on(examples: Path, tmp_path: Path) -> None:
+    model, nameless = tmp_path / "m.npz", tmp_path / "b.mcap"
+    assert invoke("train", examples, "-o", model).exit_code == 0
+    assert invoke("simulate", tmp_path / "other.mcap", "--actor", "1", "--repetitions", "1").exit_code == 0
+    write_recording(nameless, Recording(tmp_path / "other.mcap").messages(), person="", source="test")
+    said = {
+        name: " ".join(invoke("evaluate", *arguments).output.split())
+        for name, arguments in {
+            "same": (model, examples),
+            "other": (model, tmp_path / "other.mcap"),
+            "nameless": (model, nameless),
+            "left out": ("--leave-one-person-out", examples, nameless),
+        }.items()
+    }
+    assert "the model was trained on person simulated 0, whom it recognises better than others" in said["same"]
+    assert "accuracy" in said["other"] and "person" not in said["other"]
+    assert "a recording names no person" in said["nameless"]
+    assert "a recording names no person" in said["left out"]
+
+
 @pytest.fixture
 def quick_training(monkeypatch: pytest.MonkeyPatch) -> None:
     """Both presets are small ones, and the search, which takes most of the time, is left out."""
     for preset, small in ((DEFAULT, TINY), (PAPER, TINY_PAPER)):
         monkeypatch.setitem(PRESETS, preset.name, replace(small, name=preset.name))
     monkeypatch.delitem(SEARCHES, DEFAULT.kind)
+
+
+@pytest.mark.usefixtures("quick_training")
+def test_an_evaluation_names_the_actions_that_no_model_could_recognise(examples: Path, tmp_path: Path) -> None:
+    model, other = tmp_path / "m.npz", tmp_path / "other.mcap"
+    assert invoke("train", examples, "-o", model).exit_code == 0
+    assert invoke("simulate", other, "--actor", "1", "--repetitions", "2").exit_code == 0
+    evaluated = ("evaluate", model, other), ("evaluate", "--leave-one-person-out", examples, other)
+    assert not any("counts as missed" in invoke(*command).output for command in evaluated)
+    assert invoke("label", "relabel", other, "1", "wave").exit_code == 0
+    given, left_out = (" ".join(invoke(*command).output.split()) for command in evaluated)
+    assert "the model does not know wave, which the recordings contain: each one counts as missed" in given
+    assert "only one person does wave, which the model that is tested on this person therefore does not" in left_out
 
 
 @pytest.mark.usefixtures("quick_training")

@@ -1,7 +1,9 @@
 """A play is the recordings in a row as one live session, and tells no answers."""
 
+import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from unittest.mock import Mock
 
 import pytest
 
@@ -10,7 +12,7 @@ from actum.joining import PAUSE_NS
 from actum.messages import AUTO, REPLAY, Image, Message, Objects, Posture, Segment, Skeleton
 from actum.recorder import write_recording
 from actum.recording import Recording
-from actum_command.streaming import playable_topics, schedule
+from actum_command.streaming import playable_topics, put_all, schedule
 from empty_messages import action, image, mark, skeleton
 
 Record = Callable[..., Recording]
@@ -74,6 +76,17 @@ def test_numbers_keep_their_gaps_and_go_on_between_recordings(record: Record) ->
     played = play(first, second)
     assert [m.seq for m in played if isinstance(m, Skeleton)] == [3, 5, 6, 7]
     assert [m.seq for m in played if isinstance(m, Image)] == [0, 1]
+
+
+@pytest.mark.parametrize(("numbers", "before"), [((4205, 4206), 4204), ((0, 1), 0), ((), None)])
+def test_no_frame_counts_as_lost_between_the_empty_one_and_the_first(
+    numbers: Sequence[int], before: int | None, record: Record
+) -> None:
+    recording = record("late", mark("start", 1), *(skeleton(n + 1, number) for n, number in enumerate(numbers)))
+    client, stopped = Mock(sensor="kinect0", run="run"), threading.Event()
+    stopped.set()
+    put_all(client, [recording], 1.0, stopped)
+    assert [call.args[0].seq for call in client.put.call_args_list] == [before]
 
 
 def test_streams_carry_the_plays_session_and_a_restart_stays_visible(record: Record) -> None:

@@ -1,6 +1,7 @@
 """The marks of the simulated scene's true actions are published once somebody listens."""
 
 import threading
+from unittest.mock import Mock
 
 from actum import keys
 from actum.messages import SIMULATOR, Segment, Truth
@@ -56,3 +57,13 @@ def test_marks_wait_for_who_listens_and_say_when_an_action_starts_but_not_which(
     (mark,) = client.put_messages
     assert (mark.stamp_ns, mark.kind, mark.segment_id, mark.origin) == (5, "start", "push-1", SIMULATOR)
     assert mark.label is None
+
+
+def test_an_action_that_had_begun_before_is_not_marked() -> None:
+    """The classifier would reject its end: it has no start."""
+    names = ("end", "push-0"), ("start", "push-1"), ("end", "push-1")
+    truths = [TRUTH.model_copy(update={"kind": kind, "segment_id": name}) for kind, name in names]
+    stop, received, client = threading.Event(), iter(truths), Mock(sensor="kinect0")
+    client.listen().receive = lambda: next((Mock(message=truth) for truth in received), stop.set())
+    mark_truth(client, stop)
+    assert [(call.args[0].kind, call.args[0].segment_id) for call in client.put.call_args_list] == list(names[1:])

@@ -18,6 +18,10 @@ PICKED = [
     Segmentation(options=SpottingOptions(0.5)),
     Segmentation(options=SpottingOptions(2.0, 0.5, {"wave": 3.0, "pick up": 0.5}, frozenset({"push", 'the "pull"'}))),
     Segmentation(options=SpottingOptions(cooldown_s={"grüßen": 1.0}), enabled=frozenset({"grüßen", "clap"})),
+    Segmentation(options=SpottingOptions(cooldown_s={"wave 👋": 1.0}, disabled=frozenset({"clap 👏"}))),
+    Segmentation(
+        options=SpottingOptions(cooldown_s={"up, down": 1.0, "a=b": 2.0}, disabled=frozenset({"left, right"}))
+    ),
 ]
 
 

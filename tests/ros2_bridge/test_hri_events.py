@@ -10,7 +10,7 @@ from conftest import NEEDS_ROS2_EXTRA
 
 pytest.importorskip("rosbags", reason=NEEDS_ROS2_EXTRA)
 
-from actum.messages import Event
+from actum.messages import ActedObject, Event
 from events import event
 from humans import Room
 from people import STANDING, skeleton
@@ -90,6 +90,20 @@ def test_an_intent_whose_object_is_not_known_is_left_out_and_counted(room: Room)
     room.handle(doing("point at", object=None))
     assert "/intents" not in room.said
     assert room.bridge.counters.counts == {"intent without an object, left out": 1}
+
+
+def test_an_intent_whose_object_is_one_of_several_is_left_out_and_counted(room: Room) -> None:
+    cup = ActedObject(id=1, name="cup", distance_m=0.1)
+    room.handle(doing("point at", candidates=[cup, cup.model_copy(update={"id": 2, "name": "box"})]))
+    assert "/intents" not in room.said
+    assert room.bridge.counters.counts == {"intent without an object, left out": 1}
+
+
+def test_what_may_be_none_of_the_actions_is_neither_a_gesture_nor_an_intent(room: Room) -> None:
+    room.handle(doing("two hand wave", unknown=True))
+    assert room.of_person("action").unknown
+    assert not {"/intents", f"/humans/bodies/{room.bodies[0]}/gesture"} & room.said.keys()
+    assert room.bridge.counters.counts == {"unknown, no gesture or intent": 1}
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 """The container files: what they say, and what they do on a real engine."""
 
 import json
+import re
 import signal
 import subprocess
 import time
@@ -11,6 +12,7 @@ from typing import Any
 
 import msgpack
 import pytest
+import yaml
 import zenoh
 
 from actum.health import FRESH_S, is_healthy
@@ -128,6 +130,17 @@ def test_what_is_taught_is_put_where_the_classifier_reads_it_and_stays(services)
     assert trainer["volumes"] == ["models:/models"]
     assert trainer["entrypoint"] == ["python", "-m", "model_trainer"]
     assert services["demo_model"]["command"][0].startswith("test -e /models/model.npz && exit;")
+
+
+def test_the_history_that_the_page_adds_has_a_volume_that_its_user_may_write():
+    """A named volume takes its owner from the folder in the image."""
+    (added,) = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs/operating.md").read_text(encoding="utf-8"), re.DOTALL)
+    project = yaml.safe_load(added)
+    volume, _, folder = project["services"]["history"]["volumes"][0].partition(":")
+    assert volume in project["volumes"]
+    assert project["services"]["history"]["command"] == ["record", folder, "--events"]
+    (owned,) = re.findall(r"install --directory --owner=actum (.*?) \\\n", (DEPLOY / "service.Dockerfile").read_text())
+    assert folder in owned.split()
 
 
 def test_who_answers_keeps_the_answers_where_they_stay(services):

@@ -30,7 +30,7 @@ from actum_command.commands.tune_command import SEARCH_SETTINGS, flags_for
 from actum_command.service_settings import Given, arguments_of, flag_of
 from actum_model_trainer.continuous.continuous_report import continuous_report
 from actum_model_trainer.continuous.scoring import scores_of
-from actum_model_trainer.continuous.watching import NoSpotterError, found_by
+from actum_model_trainer.continuous.watching import NoSpotterError, found_by, views_of
 from actum_model_trainer.continuous_cross_validation import found_without_each, models_without
 from actum_model_trainer.cross_validation import leave_one_person_out
 from actum_model_trainer.evaluation import evaluate
@@ -40,6 +40,7 @@ from actum_model_trainer.foreseeing.recorded import recorded_in
 from actum_model_trainer.provenance import TrainingError
 from actum_model_trainer.report import report
 from actum_model_trainer.side_by_side import at_most
+from actum_model_trainer.tuning.doubts import of_test
 from som_classifier.model import Model
 from som_classifier.model_loading import ModelError, load_model
 from som_classifier.presets import DEFAULT, Preset
@@ -155,6 +156,9 @@ def _evaluate_segments(
             "recordings with 'actum label'"
         )
     console.print(report(result, time.monotonic() - began_s))
+    people = {str(each.path): each.person for each in recordings}
+    for doubt in of_test(model, people, [(each.label, each.file) for each in result.predictions]):
+        say(doubt, style="yellow")
     if json_file is not None:
         write_text(json_file, json.dumps(result.as_json(), indent=1))
 
@@ -184,6 +188,9 @@ def _evaluate_continuously(
         fail("the given recordings contain no skeletons: give recordings of a person")
     scores = scores_of(found)
     console.print(continuous_report(scores, time.monotonic() - began_s))
+    people = {file: each.person for each in recordings for _, file in views_of(each)}
+    for doubt in of_test(model, people, [(each.label, each.file) for each in found.truths]):
+        say(doubt, style="yellow")
     if json_file is not None:
         write_text(json_file, json.dumps(found.as_json() | {"scores": scores.as_json()}, indent=1))
 

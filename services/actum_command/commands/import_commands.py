@@ -87,7 +87,8 @@ def bimacs(source: Source, out: Out) -> None:
     """Import OptiTrack motion capture of two hands and objects, labelled as in the KIT Bimanual Actions Dataset.
 
     The folder SOURCE contains files such as subject0_take0.csv. Each file becomes a recording with labelled segments of
-    each hand.
+    each hand. The recordings contain hands without bodies, so models cannot be trained or tested on them; programs can
+    read the paths of hands and objects.
     """
     _run(import_bimacs, source, out)
 

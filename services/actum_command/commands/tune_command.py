@@ -1,10 +1,12 @@
 """`actum tune`: picks the settings of the search for actions from labelled continuous recordings."""
 
+import csv
 import json
 import shlex
 import time
 import tomllib
 from collections.abc import Iterator
+from io import StringIO
 from pathlib import Path
 from typing import Annotated
 
@@ -97,7 +99,7 @@ def flags_for(segmentation: Segmentation) -> str:
     flags = []
     for name, value in _set(segmentation):
         parts = [f"{action}={seconds:g}" for action, seconds in value.items()] if isinstance(value, dict) else value
-        flags.append(f"{flag_of(name)}={','.join(parts) if isinstance(parts, list) else parts}")
+        flags.append(f"{flag_of(name)}={_as_csv(parts) if isinstance(parts, list) else parts}")
     return shlex.join(flags)
 
 
@@ -135,8 +137,14 @@ def _set(segmentation: Segmentation) -> Iterator[tuple[str, float | dict[str, fl
     yield from ((name, value) for name, value in zip(SEARCH_SETTINGS, values, strict=True) if value)
 
 
-def _as_toml(value: float | dict[str, float] | list[str]) -> str:
+def _as_csv(names: list[str]) -> str:
+    row = StringIO()
+    csv.writer(row, lineterminator="").writerow(names)
+    return row.getvalue()
+
+
+def _as_toml(value: float | str | dict[str, float] | list[str]) -> str:
     """Write a value in TOML, whose strings are JSON's."""
     if isinstance(value, dict):
-        return f"{{{', '.join(f'{json.dumps(name)} = {seconds}' for name, seconds in value.items())}}}"
+        return f"{{{', '.join(f'{_as_toml(name)} = {seconds}' for name, seconds in value.items())}}}"
     return json.dumps(value, ensure_ascii=False)

@@ -1,7 +1,7 @@
-"""How far a choice of settings can be trusted: how sure its rate of false alarms is, and what speaks against it."""
+"""How far a choice of settings or a test can be trusted: how sure its false alarms are, and what speaks against it."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from actum_model_trainer.continuous.scoring import FALSE_ALARMS_PER_MIN, ContinuousScores
 from actum_model_trainer.tuning.weighing import Weighed
@@ -29,23 +29,59 @@ def doubts(
     model: Model, weighed: Sequence[Weighed], scores: ContinuousScores, most_per_min: float | None
 ) -> Iterator[str]:
     """Yield what speaks against trusting the scores of the settings that were chosen on these recordings."""
-    persons = {each.trial.person for each in weighed}
-    if seen := sorted(persons & set(model.metadata.persons) - {""}):
-        yield (
-            f"the model was trained on person {', '.join(seen)}, whom it recognises better than others: "
-            "tune on recordings of somebody else"
-        )
-    if "" in persons:
-        yield "a recording names no person: if the model was trained on that person, the result is too good"
+    yield from _of_people({each.trial.person for each in weighed}, model.metadata.persons)
     yield from _too_little(scores, FALSE_ALARMS_PER_MIN if most_per_min is None else most_per_min)
     if model.background_s == 0:
         yield (
             "the model was trained without background, so it has only one sensitivity and has to guess what is "
             "background: record background and train again"
         )
-    known = set(model.labels)
-    if unknown := sorted({label for label, own in scores.per_action.items() if own.truths} - known):
+    yield from _of_actions((label for label, own in scores.per_action.items() if own.truths), model.labels)
+
+
+def of_test(model: Model | None, people: Mapping[str, str], done: Sequence[tuple[str, str]]) -> Iterator[str]:
+    """Yield what makes the scores of a test better or worse than those of new people.
+
+    Args:
+        model: was tested; None where each person was with a model of all others.
+        people: by file.
+        done: actions, each with its file.
+    """
+    if model is None:
+        yield from _of_people(people.values(), ())
+        yield from _of_one_person((label, people[file]) for label, file in done)
+    else:
+        yield from _of_people(people.values(), model.metadata.persons)
+        yield from _of_actions((label for label, _ in done), model.labels)
+
+
+def _of_people(tested: Collection[str], trained: Collection[str]) -> Iterator[str]:
+    """Yield where the people who are tested are, or may be, those whom the model was trained on."""
+    if seen := sorted(set(tested) & set(trained) - {""}):
+        yield (
+            f"the model was trained on person {', '.join(seen)}, whom it recognises better than others: "
+            "use recordings of somebody else"
+        )
+    if "" in tested:
+        yield "a recording names no person: if the model was trained on that person, the result is too good"
+
+
+def _of_actions(done: Iterable[str], known: Collection[str]) -> Iterator[str]:
+    """Yield which of the actions that were done no model could recognise."""
+    if unknown := sorted(set(done) - set(known)):
         yield f"the model does not know {', '.join(unknown)}, which the recordings contain: each one counts as missed"
+
+
+def _of_one_person(done: Iterable[tuple[str, str]]) -> Iterator[str]:
+    """Yield which actions one person alone did, of actions and people: without that person, no model learns them."""
+    people: dict[str, set[str]] = {}
+    for label, person in done:
+        people.setdefault(label, set()).add(person)
+    if alone := sorted(label for label, of_label in people.items() if len(of_label) == 1):
+        yield (
+            f"only one person does {', '.join(alone)}, which the model that is tested on this person therefore does "
+            "not know: each one counts as missed"
+        )
 
 
 def _too_little(scores: ContinuousScores, wanted_per_min: float) -> Iterator[str]:

@@ -109,6 +109,9 @@ class Humans:
             return
         frame_id = self._settings.frame_id
         yield from self._topics.on(human.person_topic("action"), converting.person_action(event, frame_id))
+        if event.unknown:  # neither a gesture nor an intent can say so, and robots act on them
+            self._counters.counts["unknown, no gesture or intent"] += 1
+            return
         gesture = self._mapping.gestures.get(event.action)
         if gesture is not None:
             yield from self._topics.on(human.body_topic("gesture"), converting.gesture(event, gesture, frame_id))

@@ -107,8 +107,9 @@ class IntentRule(_Part):
     recipient: Role | None = None
 
     def data(self, event: Event, person: str) -> dict[str, str] | None:
-        """Return the intent's data of an event; None where a role needs an object and there is none."""
-        known = {"person": person, "label": event.action or "", "object": event.object.name if event.object else ""}
+        """Return the intent's data of an event; None where a role needs an object and no single one is known."""
+        name = event.object.name if event.object and not event.candidates else ""
+        known = {"person": person, "label": event.action or "", "object": name}
         texts = {role: text for role in ROLES if (text := getattr(self, role)) is not None}
         needed = {name for text in texts.values() for _, name, *_ in Formatter().parse(text) if name}
         if not all(known[name] for name in needed):
