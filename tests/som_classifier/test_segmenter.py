@@ -93,6 +93,13 @@ def test_a_start_before_the_first_posture_begins_with_it() -> None:
     assert stamps(run.closed[0]) == list(range(50, 60))
 
 
+@pytest.mark.parametrize("end_ns", [None, 20 * FRAME_NS], ids=["no stamp", "a stamp of before"])
+def test_what_was_marked_before_the_first_posture_does_not_end_before_it_starts(end_ns: int | None) -> None:
+    run = Run().feed(mark("start"), mark("end", end_ns), *postures(10, first_ns=50 * FRAME_NS)).wait(2.3)
+    assert run.reasons == ["no person"]
+    assert run.closed[0].start_ns == run.closed[0].end_ns == (end_ns or 0)
+
+
 def test_segments_may_overlap() -> None:
     marks = [
         mark("start", 0, "a"),
