@@ -1,6 +1,6 @@
 """Cuts postures into segments by marks: whose, from when to when, with which frames, or why not.
 
-A segment closes once its posture stream has reached the end, or after two seconds of waiting for it; while nobody's
+A segment closes once its posture stream has reached the end, or two seconds after the end is due; while nobody's
 postures come, as when a link is cut, after ten. `som_classifier.segments.SegmentState` lists the states of a segment.
 """
 
@@ -116,14 +116,14 @@ class Segmenter:
         return []
 
     def tick(self, tick: Tick) -> list[ClosedSegment]:
-        """Close the segments that have waited too long: 2 s for the last frames, a longest segment for an end mark."""
+        """Close the segments that have waited too long: 2 s for frames that are due, a longest segment for an end."""
         self._flow.tick(tick.monotonic_ns)
         self._now_ns = tick.monotonic_ns
         self._first_tick_ns = self._now_ns if self._first_tick_ns < 0 else self._first_tick_ns
         closed = []
         for segment in self._open:
             if segment.waiting_since_ns is None or segment.is_passed(self._passed_ns):
-                segment.waiting_since_ns = tick.monotonic_ns
+                segment.waiting_since_ns = tick.monotonic_ns + segment.ahead_ns(self.streams.newest_ns)
             waited_ns = tick.monotonic_ns - segment.waiting_since_ns
             if segment.state is SegmentState.OPEN and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
                 closed.append(self._reject(segment, self._why_no_end(segment)))

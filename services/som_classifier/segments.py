@@ -65,7 +65,8 @@ class OpenSegment:
         label: the action; None where the mark does not say so.
         end_ns: None until its end mark.
         nearest: the agent nearest to the camera, where the mark names none; None until it is determined.
-        waiting_since_ns: the tick since which the segment waits for its end mark, or for the frames up to its end.
+        waiting_since_ns: the tick since which the segment waits for its end mark, or for the frames up to its end; a
+            later one where these are not due yet.
     """
 
     segment_id: str
@@ -100,6 +101,11 @@ class OpenSegment:
     def is_too_long(self, newest_ns: int | None) -> bool:
         """Tell whether its end can come no more, as frames come that are newer than any that it may have."""
         return None not in (self.start_ns, newest_ns) and (newest_ns or 0) > self.latest_ns + MAX_SKEW_NS
+
+    def ahead_ns(self, newest_ns: int | None) -> int:
+        """Return how far its end is ahead of the newest frame (ns); 0 where that is too far for one clock."""
+        ahead_ns = 0 if self.end_ns is None or newest_ns is None else self.end_ns - newest_ns
+        return ahead_ns if 0 < ahead_ns <= MAX_SEGMENT_NS else 0
 
     def holds(self, stamp_ns: int) -> bool:
         """Tell whether an instant lies within it, as far as its start and end are known."""

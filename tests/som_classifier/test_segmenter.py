@@ -46,6 +46,21 @@ def test_it_closes_after_two_seconds_where_the_frames_of_others_go_on() -> None:
     assert stamps(run.wait(0.3).closed[0]) == list(range(10))
 
 
+def test_frames_that_are_still_to_be_captured_are_not_lost() -> None:
+    """Somebody knows beforehand how long the action takes, or has a clock that is fast."""
+    frames = postures(200)
+    run = Run().feed(*frames[:10], mark("start", 15 * FRAME_NS, agent=1), mark("end", 180 * FRAME_NS))
+    for i in range(10, len(frames), 3):
+        run.feed(*frames[i : i + 3]).wait(0.1)
+    assert [stamps(closed) for closed in run.closed] == [list(range(15, 181))]
+
+
+def test_frames_of_another_clock_than_that_of_the_marks_are_not_waited_for() -> None:
+    hours_ns = 10**5 * SECOND_NS
+    run = Run().feed(*postures(10), mark("start", hours_ns), mark("end", hours_ns + SECOND_NS)).wait(10.4)
+    assert run.reasons == ["frames lost: none came for the last 1.0 s of the segment"]
+
+
 def test_while_nobodys_frames_come_it_waits_for_ten_seconds_and_answers_with_all_that_comes() -> None:
     frames = postures(30)
     run = Run().feed(*frames[:10], mark("start", 0), mark("end", 20 * FRAME_NS)).wait(8.0)
