@@ -39,6 +39,9 @@ class AnsweredSegments:
         self._counters = counters
         self._answered: OrderedDict[str, _Answered] = OrderedDict()
 
+    def __contains__(self, segment_id: str) -> bool:
+        return segment_id in self._answered
+
     def state(self, mark: Segment) -> SegmentState:
         """Return how far the segment of a mark has come; `NEW` where it is not answered.
 
