@@ -239,7 +239,7 @@ class SomClassifier:
         return self._model.recognise(usable, complete)
 
     def _final(self, closed: ClosedSegment) -> Action:
-        recognition = None if closed.reason else self._recognise(closed.usable, complete=True)
+        recognition = None if closed.reason else self._recognise(closed.usable, closed.is_seen_to_its_end)
         reason = closed.reason
         if reason is None and self._model is None:
             reason = "no model"

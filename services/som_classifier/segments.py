@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
+from actum.losses import longest_loss_s
 from actum.messages import Hand, Segment
 from som_classifier.frames import Frame
 
@@ -162,6 +163,12 @@ class ClosedSegment:
     def usable(self) -> list[Frame]:
         """The valid frames."""
         return [frame for frame in self.frames if frame.valid]
+
+    @property
+    def is_seen_to_its_end(self) -> bool:
+        """Whether they reach its end, or nearly; where a person has left before, they show how an action begins."""
+        last_ns = self.usable[-1].stamp_ns if self.usable else self.start_ns
+        return longest_loss_s([(last_ns, self.end_ns)], self.start_ns, self.end_ns) is None
 
 
 def with_cause(reason: str, cause: str | None) -> str:

@@ -65,8 +65,8 @@ class Action(Message):
     unknown: bool = False
     """Whether the segment may be none of the trained actions: it is less like `action` than most true instances are."""
     familiarity: FiniteFloat | None = None
-    """Probability that the segment is a true instance of `action`, not another movement; null in partial messages, and
-    if the model cannot compute it."""
+    """Probability that the segment is a true instance of `action`, not another movement; null in partial messages, if
+    the person was seen only during the segment's beginning, and if the model cannot compute it."""
     missing_joints: list[Name] = Field([])
     """The names of the joints that were missing in some frame for longer than 0.3 s."""
     completeness: FiniteFloat | None = None
