@@ -10,6 +10,8 @@ from people import FRAME_NS, STANDING, reaches, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from segmenter_runs import Run, mark, postures, stamps
+from som_classifier.frames import Frame
+from som_classifier.stream import Stream
 
 BACK_NS = 90 * SECOND_NS
 """How far a clock steps back: further than any segment reaches."""
@@ -246,6 +248,23 @@ def test_what_was_marked_before_the_stamps_began_anew_does_not_mark_the_same_sta
     assert run.segmenter.is_marked(1, first_ns, first_ns + FRAME_NS)
     run.feed(*[posture.model_copy(update=anew) for posture in postures(RESTART_AFTER)])
     assert not run.segmenter.is_marked(1, first_ns, first_ns + FRAME_NS)
+
+
+def test_frames_of_whom_none_is_usable_are_not_looked_at_again_with_each_frame(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many starts whose ends were forgotten would take the time of all others in view."""
+    looked_at: list[Frame] = []
+    between = Stream.between
+
+    def counted(stream: Stream, start_ns: int, end_ns: int) -> list[Frame]:
+        found = between(stream, start_ns, end_ns)
+        looked_at.extend(found)
+        return found
+
+    monkeypatch.setattr(Stream, "between", counted)
+    blank = {"valid": False, "joints": None, "joints_m": None, "upright": None, "motion": None, "reason": "dark"}
+    frames = [p.model_copy(update=blank) for p in postures(100)]
+    Run().feed(*[mark("start", 0, f"{i}") for i in range(8)], *frames)
+    assert len(looked_at) < 10 * len(frames)
 
 
 def test_frames_without_a_posture_belong_to_the_segment_but_not_to_the_recognition() -> None:
