@@ -66,8 +66,9 @@ OF_SEGMENTS: Mapping[str, Problem] = {
         "Mark the action again; see `drops` in `status`.",
     ),
     "frames lost: none came for the last … s of the segment": Problem(
-        "Frames stopped arriving before the segment's end, and none arrived for ten seconds.",
-        "Check the recording, the camera and the network.",
+        "Frames stopped arriving before the segment's end, and none arrived for ten seconds, or the marks' stamps are "
+        "of another clock.",
+        "Check the recording, the camera, the network and the marks' stamps.",
     ),
     "the classifier started late: its first frame is … s after the segment's start": Problem(
         "The classifier was started after the segment had begun, and earlier frames are no longer kept.",

@@ -192,6 +192,9 @@ OF_TRACKER: Mapping[str, Problem] = {
 
 OF_FUSION: Mapping[str, Problem] = {
     "bad_object": Problem("An object is further away than 100 m; it is ignored.", "Publish positions in metres."),
+    "repeated_object": Problem(
+        "Two objects in one message have the same number; the last one counts.", "Give each object a number."
+    ),
     "too_many_objects": Problem(
         "More than 128 different objects appeared within a minute; new ones are ignored.",
         "Let each object keep its number, or use a smaller marker dictionary.",

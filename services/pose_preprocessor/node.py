@@ -84,13 +84,12 @@ class _Person:
         self._keep(frame.stamp_ns, joints, bridged, missing)
         if missing:
             body.metric_ego[[index for index in missing if index not in ALWAYS]] = np.nan
-            measured[_TORSO] = bridged[_TORSO]
         return _Lists(
             joints_to_list(body.metric_ego),
             joints_to_list(body.scaled_ego),
             joints_to_list(self._upright(frame.stamp_ns, bridged, body.scaled, frame.up_in_camera)),
             geometry.flat(body.ego_from_camera),
-            self.motion.step(frame.stamp_ns, measured),
+            self.motion.step(frame.stamp_ns, bridged),
         )
 
     def _keep(self, stamp_ns: int, joints: list[Joint], bridged: Array, missing: Sequence[int]) -> None:

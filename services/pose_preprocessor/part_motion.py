@@ -51,7 +51,8 @@ class PartMotionFilter:
 
         Args:
             stamp_ns: rising from call to call.
-            joints: (15, 3), camera frame, metres; NaN where unknown.
+            joints: (15, 3), camera frame, metres, with short gaps bridged: a joint that flickers would move less far
+                than one that does not, so that another part would seem to move most. NaN where unknown.
         """
         relative, gain = joints - joints[_TORSO], self.gain(stamp_ns)
         if gain == 0.0:

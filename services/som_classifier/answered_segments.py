@@ -20,12 +20,14 @@ class _Answered:
         end_ns: its end.
         state: `ANSWERED`, `USED_UP` or `FORMER`.
         awaited: the kinds of marks that may come once more, or late, though it is answered.
+        recalled_ns: the starts and ends of other segments of its id that were answered before this process was there.
     """
 
     start_ns: int | None
     end_ns: int | None
     state: SegmentState = SegmentState.ANSWERED
     awaited: set[str] = field(default_factory=set)
+    recalled_ns: set[int | None] = field(default_factory=set)
 
     def stamp_ns(self, kind: str) -> int | None:
         """Return the stamp of its start or its end; None where it is unknown."""
@@ -38,6 +40,9 @@ class AnsweredSegments:
     def __init__(self, counters: Counters) -> None:
         self._counters = counters
         self._answered: OrderedDict[str, _Answered] = OrderedDict()
+
+    def __contains__(self, segment_id: str) -> bool:
+        return segment_id in self._answered
 
     def state(self, mark: Segment) -> SegmentState:
         """Return how far the segment of a mark has come; `NEW` where it is not answered.
@@ -62,9 +67,14 @@ class AnsweredSegments:
 
     def recall(self, answer: Action) -> None:
         """Add a segment that was answered before this process was there; a second one of an id has used it up."""
-        state = SegmentState.USED_UP if answer.segment_id in self._answered else SegmentState.ANSWERED
+        before = self._answered.get(answer.segment_id)
+        state = SegmentState.ANSWERED if before is None else SegmentState.USED_UP
         end_ns = answer.end_ns if answer.valid or answer.end_ns != answer.start_ns else None
-        self._add(answer.segment_id, _Answered(answer.start_ns, end_ns, state, {"start", "end"}))
+        recalled = _Answered(answer.start_ns, end_ns, state, {"start", "end"})
+        if before is not None:
+            recalled.recalled_ns = before.recalled_ns
+            recalled.recalled_ns.update((before.start_ns, before.end_ns))
+        self._add(answer.segment_id, recalled)
 
     def _add(self, segment_id: str, answered: _Answered) -> None:
         self._answered[segment_id] = answered
@@ -83,7 +93,9 @@ class AnsweredSegments:
         """
         answered = self._answered[mark.segment_id]
         known_ns, is_end = answered.stamp_ns(mark.kind), mark.kind == "end"
-        if mark.kind in answered.awaited and (mark.stamp_ns in (None, known_ns) or (is_end and known_ns is None)):
+        if mark.stamp_ns is not None and mark.stamp_ns in answered.recalled_ns:
+            self._counters.counts["marks_told_again"] += 1
+        elif mark.kind in answered.awaited and (mark.stamp_ns in (None, known_ns) or (is_end and known_ns is None)):
             answered.awaited.remove(mark.kind)
             self._counters.counts["marks_told_again"] += 1
         elif is_end and known_ns is None and mark.stamp_ns is not None and answered.state is not SegmentState.USED_UP:

@@ -192,7 +192,7 @@ class SomClassifier:
     def _found(self, found: SpottedSegment, stream: Stream, agent: int) -> Iterator[Message]:
         """Mark and answer a segment that was found, unless it is not to be published; count what becomes of it."""
         search = stream.search
-        closed = stream.cut(OpenSegment(search.next_id, found.start_ns, agent, end_ns=found.end_ns))
+        closed = stream.cut(OpenSegment(self._next_id(search), found.start_ns, agent, end_ns=found.end_ns))
         answer = None if closed.reason else self._recognise(closed.usable, complete=True)
         recognition = answer and answer.where_found(found.precision)
         fate = self._fate(closed, recognition, search)
@@ -225,7 +225,13 @@ class SomClassifier:
         search, bounds = stream.search, (ongoing.start_ns, posture.stamp_ns)
         hindrance = search.admission.hindrance(ongoing.label, ongoing.start_ns)
         if hindrance is None and not self._segmenter.is_marked(posture.agent, *bounds):
-            yield ongoing_action(search.next_id, ongoing, stream.stretch(*bounds), posture)
+            yield ongoing_action(self._next_id(search), ongoing, stream.stretch(*bounds), posture)
+
+    def _next_id(self, search: Search) -> str:
+        """Return the id that the next segment found gets: not one that was given before this process was there."""
+        while self._segmenter.is_answered(search.next_id):
+            search.count_told()
+        return search.next_id
 
     def _recognise(self, usable: list[Frame], complete: bool) -> Recognition | None:
         if self._model is None or len(usable) < self._model.min_frames:
@@ -233,7 +239,7 @@ class SomClassifier:
         return self._model.recognise(usable, complete)
 
     def _final(self, closed: ClosedSegment) -> Action:
-        recognition = None if closed.reason else self._recognise(closed.usable, complete=True)
+        recognition = None if closed.reason else self._recognise(closed.usable, closed.is_seen_to_its_end)
         reason = closed.reason
         if reason is None and self._model is None:
             reason = "no model"

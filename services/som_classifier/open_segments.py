@@ -45,9 +45,9 @@ class OpenSegments:
         return self._of_agent.get(agent, ())
 
     def date(self, stamp_ns: int) -> None:
-        """Let those begin now of which no frame had come yet from which they could begin."""
+        """Let those begin now of which no frame had come yet from which they could begin, but not after their end."""
         for segment in self._undated:
-            segment.start_ns = stamp_ns
+            segment.start_ns = stamp_ns if segment.end_ns is None else min(stamp_ns, segment.end_ns)
         if self._undated:
             self.sort()
 

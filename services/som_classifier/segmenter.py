@@ -1,10 +1,10 @@
 """Cuts postures into segments by marks: whose, from when to when, with which frames, or why not.
 
-A segment closes once its posture stream has reached the end, or after two seconds of waiting for it; while nobody's
+A segment closes once its posture stream has reached the end, or two seconds after the end is due; while nobody's
 postures come, as when a link is cut, after ten. `som_classifier.segments.SegmentState` lists the states of a segment.
 """
 
-from collections import deque
+from collections import defaultdict, deque
 from collections.abc import Sequence
 from itertools import chain
 
@@ -43,6 +43,7 @@ class Segmenter:
         self._passed_ns = -1  # the newest stamp since the last tick
         self._answered = AnsweredSegments(counters)
         self._marked: deque[Marked] = deque(maxlen=MARKED)
+        self._recalled: defaultdict[str, list[Marked | None]] = defaultdict(list)  # by session
         self._session: str | None = None
         self._flow = Flow()
         self._is_resumed = False
@@ -61,7 +62,8 @@ class Segmenter:
         for answer in answers:
             self._answered.recall(answer)
             known = answer.segment_id, answer.start_ns, answer.agent, answer.hand, None, answer.end_ns
-            self._remember_marked(OpenSegment(*known))
+            self._recalled[answer.session_id].append(OpenSegment(*known).marked)
+        self._recall_marked(self._session or "")
 
     def posture(self, posture: Posture) -> tuple[Frame | None, list[ClosedSegment]]:
         """Receive the next posture; return its frame, None if it is stale, and the segments it closes."""
@@ -116,14 +118,14 @@ class Segmenter:
         return []
 
     def tick(self, tick: Tick) -> list[ClosedSegment]:
-        """Close the segments that have waited too long: 2 s for the last frames, a longest segment for an end mark."""
+        """Close the segments that have waited too long: 2 s for frames that are due, a longest segment for an end."""
         self._flow.tick(tick.monotonic_ns)
         self._now_ns = tick.monotonic_ns
         self._first_tick_ns = self._now_ns if self._first_tick_ns < 0 else self._first_tick_ns
         closed = []
         for segment in self._open:
             if segment.waiting_since_ns is None or segment.is_passed(self._passed_ns):
-                segment.waiting_since_ns = tick.monotonic_ns
+                segment.waiting_since_ns = tick.monotonic_ns + segment.ahead_ns(self.streams.newest_ns)
             waited_ns = tick.monotonic_ns - segment.waiting_since_ns
             if segment.state is SegmentState.OPEN and waited_ns > MAX_SEGMENT_NS + MAX_SKEW_NS:
                 closed.append(self._reject(segment, self._why_no_end(segment)))
@@ -149,6 +151,10 @@ class Segmenter:
             of in (agent, None) and first_ns <= end_ns and start_ns <= until_ns
             for of, first_ns, until_ns in chain(filter(None, is_open), self._marked)
         )
+
+    def is_answered(self, segment_id: str) -> bool:
+        """Tell whether a segment of this id was marked, or answered before this process was there."""
+        return segment_id in self._answered
 
     def _state(self, mark: Segment) -> SegmentState:
         segment = self._open.get(mark.segment_id)
@@ -244,6 +250,10 @@ class Segmenter:
         if segment.marked is not None:
             self._marked.append(segment.marked)
 
+    def _recall_marked(self, session_id: str) -> None:
+        """Remember the marked segments of a session that were answered before this process was there, and no others."""
+        self._marked = deque(filter(None, self._recalled.get(session_id, ())), MARKED)
+
     def _restart(self, session_id: str) -> list[ClosedSegment]:
         """Close all segments and forget all frames where the session is another one than before."""
         before, self._session = self._session, session_id
@@ -252,7 +262,7 @@ class Segmenter:
         closed = [] if self.streams.newest_ns is None else self._close_all()
         self.streams.clear()
         self._answered.end_session()
-        self._marked.clear()
+        self._recall_marked(session_id)
         return closed
 
     def _close_all(self) -> list[ClosedSegment]:

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from actum.limits import MAX_SEGMENT_NS, MAX_SKEW_NS
+from actum.losses import longest_loss_s
 from actum.messages import Hand, Segment
 from som_classifier.frames import Frame
 
@@ -65,7 +66,8 @@ class OpenSegment:
         label: the action; None where the mark does not say so.
         end_ns: None until its end mark.
         nearest: the agent nearest to the camera, where the mark names none; None until it is determined.
-        waiting_since_ns: the tick since which the segment waits for its end mark, or for the frames up to its end.
+        waiting_since_ns: the tick since which the segment waits for its end mark, or for the frames up to its end; a
+            later one where these are not due yet.
     """
 
     segment_id: str
@@ -100,6 +102,11 @@ class OpenSegment:
     def is_too_long(self, newest_ns: int | None) -> bool:
         """Tell whether its end can come no more, as frames come that are newer than any that it may have."""
         return None not in (self.start_ns, newest_ns) and (newest_ns or 0) > self.latest_ns + MAX_SKEW_NS
+
+    def ahead_ns(self, newest_ns: int | None) -> int:
+        """Return how far its end is ahead of the newest frame (ns); 0 where that is too far for one clock."""
+        ahead_ns = 0 if self.end_ns is None or newest_ns is None else self.end_ns - newest_ns
+        return ahead_ns if 0 < ahead_ns <= MAX_SEGMENT_NS else 0
 
     def holds(self, stamp_ns: int) -> bool:
         """Tell whether an instant lies within it, as far as its start and end are known."""
@@ -156,6 +163,12 @@ class ClosedSegment:
     def usable(self) -> list[Frame]:
         """The valid frames."""
         return [frame for frame in self.frames if frame.valid]
+
+    @property
+    def is_seen_to_its_end(self) -> bool:
+        """Whether they reach its end, or nearly; where a person has left before, they show how an action begins."""
+        last_ns = self.usable[-1].stamp_ns if self.usable else self.start_ns
+        return longest_loss_s([(last_ns, self.end_ns)], self.start_ns, self.end_ns) is None
 
 
 def with_cause(reason: str, cause: str | None) -> str:

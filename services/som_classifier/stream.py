@@ -34,11 +34,13 @@ class Stream(StreamBuffer[Frame]):
 
     Attributes:
         search: finds the actions in it that nobody marked.
+        newest_valid_ns: stamp of the newest valid frame, -1 where there is none.
     """
 
     def __init__(self, encoders: Callable[[], Encode] | None, search: Search) -> None:
         super().__init__(MEMORY_NS)
         self.search = search
+        self.newest_valid_ns = -1
         self._guard = StampGuard()
         self._lost = LostFrames()
         self._smoothing = KinematicsFilter()
@@ -61,11 +63,13 @@ class Stream(StreamBuffer[Frame]):
             return order, None
         if order is Order.RESTART:
             self.clear()
-            self._flawed_ns = self._encoded_ns = self._next_forgetting_ns = -1
+            self.newest_valid_ns = self._flawed_ns = self._encoded_ns = self._next_forgetting_ns = -1
             self.search.restart()
         frame = frame_of(posture, self._lost.before(posture.seq, order), self._smoothing)
         if frame.missing or frame.missed or not frame.valid:
             self._flawed_ns = frame.stamp_ns
+        if frame.valid:
+            self.newest_valid_ns = frame.stamp_ns
         self._encode_valid(frame)
         self.append(frame)
         if frame.stamp_ns >= self._next_forgetting_ns:

@@ -94,8 +94,9 @@ class Streams:
         valid = (
             (frame.stamp_ns, frame.distance_m, agent)
             for agent, stream in self._streams.items()
+            if agent and stream.newest_valid_ns >= start_ns
             for frame in stream.between(start_ns, end_ns)
-            if agent and frame.valid
+            if frame.valid
         )
         stamp_ns, _, agent = min(valid, default=(None, None, 0))
         return None if stamp_ns is None else (stamp_ns, agent)

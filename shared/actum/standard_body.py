@@ -80,14 +80,16 @@ def scaled(joints: Array) -> Array:
 def in_own_size(standard: Array, metric: Array) -> Array:
     """Return postures of a standard body with the bones of a person's own lengths, (…, 15, 3), the torso at 0.
 
-    A bone that is shorter or longer than its standard length, as in a mean of postures, stays so in proportion.
+    A bone that is shorter than its standard length, as in a mean of postures, stays so in proportion. One that is
+    longer, as no mean has it, gets the person's.
 
     Args:
         standard: (…, 15, 3), in any frame, NaN where unknown.
         metric: (15, 3), the person's joints in metres, in any frame, NaN where unknown.
     """
-    ratios = np.sqrt(bones_of(metric)[1]) / _LENGTHS_M
-    return _positions_where_known((standard[..., _CHILDREN, :] - standard[..., _PARENTS, :]) * ratios[:, None])
+    bones = standard[..., _CHILDREN, :] - standard[..., _PARENTS, :]
+    ratios = np.sqrt(bones_of(metric)[1]) / np.maximum(np.linalg.norm(bones, axis=-1), _LENGTHS_M)
+    return _positions_where_known(bones * ratios[..., None])
 
 
 def _positions_where_known(bones: Array) -> Array:

@@ -31,6 +31,17 @@ def test_an_absurdly_far_object_is_counted_and_left_out(node, far_m) -> None:
     assert node.counters.rejects == {"bad_object": len(scene.sightings())}
 
 
+def test_two_objects_of_one_number_are_counted_and_the_last_one_is_used(node) -> None:
+    elsewhere = Scene(objects={1: still((2.0, 0.0, 2.0))})
+    doubled = [
+        m.model_copy(update={"objects": [*far.objects, *m.objects]})
+        for m, far in zip(TOUCH.sightings(), elsewhere.sightings(), strict=True)
+    ]
+    (event,) = events_of(node, *TOUCH.postures(), *doubled, action("touch"))
+    assert event.object is not None
+    assert node.counters.rejects == {"repeated_object": len(doubled)}
+
+
 def test_an_actor_who_lies_down_has_no_forward(node) -> None:
     lying = acting_on((0.1, 0.0, 0.45), (0.1, 0.0, 0.65), lean=lambda _: math.pi / 2)
     (event,) = events_of(node, *lying.postures(), *lying.sightings(), action("push"))

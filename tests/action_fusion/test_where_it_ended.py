@@ -19,6 +19,7 @@ from scenes import REST_RIGHT, Place, Scene, acting_on, action, at, moving, stil
 
 CUP: Place = (0.1, 0.0, 0.45)
 LIFTED: Place = (0.1, 0.2, 0.45)
+ABOVE_CUP: Place = (0.1, 0.06, 0.45)
 PUSHED: Place = (0.1, 0.0, 0.66)
 TURNED = [0.0, 0.6, 0.0, 0.8]
 
@@ -64,6 +65,15 @@ def test_a_lifted_cup_was_taken_along_and_is_in_the_hand(hidden: bool) -> None:
 def test_a_cup_that_was_let_go_of_was_taken_along_and_is_not_in_the_hand(hidden: bool) -> None:
     found = object_of(replace(LEFT_THERE, hidden=lambda number, t: hidden and 0.55 < t < 1.5))
     assert (found.taken_along, found.in_hand_at_end) == (True, False)
+
+
+@pytest.mark.parametrize("until_s", [-0.4, 0.3])
+def test_a_cup_that_is_covered_only_before_the_action_is_not_carried_in_it(until_s: float) -> None:
+    """It was brought in a hand that covered it."""
+    brought = moving((-0.9, (0.3, 0.0, 0.3)), (until_s - 0.1, CUP), (0.6, CUP), (1.4, PUSHED))
+    hand = moving((-0.9, (0.3, 0.06, 0.3)), (until_s - 0.1, ABOVE_CUP), (0.6, ABOVE_CUP), (1.4, (0.1, 0.06, 0.66)))
+    found = object_of(Scene(right_hand=hand, objects={1: brought}, hidden=lambda _, t: -0.85 < t < until_s))
+    assert (found.taken_along, found.carried) == (True, until_s > 0)
 
 
 def test_a_cup_that_is_held_still_is_in_the_hand_and_was_not_taken_along() -> None:

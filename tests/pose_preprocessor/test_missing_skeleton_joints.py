@@ -12,6 +12,7 @@ from actum import standard_body
 from actum.messages import Joint, Posture
 from actum.skeletons import INDEX, JOINTS
 from people import FRAME_NS, STANDING, lacking, reaching, skeleton
+from pose_preprocessor.bridging import BRIDGED_NS
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.part_motion import TIME_CONSTANT_S
 from pose_preprocessor.settings import Settings as PoseSettings
@@ -114,15 +115,22 @@ def test_a_part_moves_as_its_known_joints_do_on_average() -> None:
 
 
 def test_a_joint_that_comes_back_has_not_jumped() -> None:
-    """The hand is away while the arm is stretched; on its return it counts from where it is."""
-    arm = [lacking(reaching(0.0), "right_hand"), reaching(1.0), reaching(1.0) + 1e-9]
-    first, back, after = postures([reaching(0.0), *arm])[1:]
+    """The hand is away for longer than it follows the body, while the arm is stretched; then it counts anew."""
+    away = [lacking(reaching(0.0) + 1e-9 * i, "right_hand") for i in range(BRIDGED_NS // FRAME_NS + 1)]
+    first, back, after = postures([reaching(0.0), *away, reaching(1.0), reaching(1.0) + 1e-9])[-3:]
     assert first.motion and back.motion and after.motion
     share = 1 - np.exp(-FRAME_NS / 1e9 / TIME_CONSTANT_S)
     elbow_m = float(np.linalg.norm(reaching(1.0) - reaching(0.0), axis=1)[INDEX["right_elbow"]])
-    assert first.motion == [0.0] * 5
+    assert first.motion == pytest.approx([0.0] * 5, abs=1e-12)
     assert back.motion[0] == pytest.approx(share * elbow_m / 2)
     assert after.motion[0] == pytest.approx(share * (1 - share) * elbow_m / 3, abs=1e-8)
+
+
+def test_a_joint_that_flickers_moves_its_part_as_far_as_one_that_is_always_there() -> None:
+    whole = reaching_frames()
+    flickering = [lacking(joints, "right_hand") if i % 3 else joints for i, joints in enumerate(whole)]
+    ways_m = [np.sum([posture.motion for posture in postures(frames)], axis=0) for frames in (whole, flickering)]
+    assert ways_m[1] == pytest.approx(ways_m[0], rel=0.1, abs=1e-6)
 
 
 def test_what_is_there_is_still_checked() -> None:

@@ -141,6 +141,21 @@ def test_an_end_before_the_usual_time_ends_the_action_all_the_same() -> None:
     assert estimate.activations != final.activations
 
 
+@each_preset
+@pytest.mark.parametrize(("seen", "to_its_end"), [(30, False), (50, True)], ids=["half", "nearly all"])
+def test_of_somebody_who_leaves_in_the_middle_the_beginning_of_an_action_is_judged(
+    preset: Preset, seen: int, to_its_end: bool
+) -> None:
+    model, (skeletons, marks) = tiny_model(preset), performance(["lift"], frames=60)
+    whole = postures_of(skeletons)
+    left = postures_of(skeleton(frame.stamp_ns) for frame in skeletons[seen:])
+    messages = [*marks[:1], *whole[:seen], *left, *marks[1:]]
+    *_, final = finals(replay(SomClassifier(model), [(m.stamp_ns or 0, m) for m in messages]))
+    expected = model.recognise(frames_of(model, whole[:seen]), to_its_end)
+    assert (final.valid, final.frames, final.action) == (True, seen, expected.label)
+    assert (final.confidence, final.familiarity) == (expected.confidence, expected.familiarity)
+
+
 def test_what_is_unfamiliar_is_told_at_the_end() -> None:
     model = tiny_model()
     assert isinstance(model, PyramidModel)

@@ -1,6 +1,7 @@
 """With each posture of a person who moves, the classifier puts where the joints are expected, if somebody listens."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from actum.arrays import joints_to_array
 from actum.messages import Continuation, Message, Posture, Skeleton
 from actum.node import SECOND_NS
 from actum.skeletons import INDEX
+from actum.standard_body import bones_of
 from continued import KINDS, at_this_speed, continued
 from people import FRAME_NS, STANDING, lacking, reaches, reaching, skeleton, turned
 from performers import mark
@@ -23,6 +25,7 @@ from som_classifier.kinematics import KinematicsFilter
 from som_classifier.model import Model
 from som_classifier.node import SomClassifier
 from som_classifier.placed_continuation import in_camera, joints_in_camera
+from som_classifier.regressed_continuation import ANSWERS
 from wire import Wire, without_seq
 
 Joints = NDArray[np.float64]
@@ -69,6 +72,18 @@ def test_joints_are_expected_where_they_get_at_their_speed() -> None:
     for each in newest.ahead[:2]:
         expected = now + each.ahead_s * (now - before) / 0.01
         assert joints_to_array(each.joints_m)[HAND] == pytest.approx(expected, abs=0.04)
+
+
+def test_no_bone_is_expected_to_be_longer_than_the_persons_own() -> None:
+    """A model that was taught by people who stand may expect anything of one who sits."""
+    model = at_this_speed()
+    assert model.continuation is not None
+    far_m = np.linspace(-3.0, 3.0, ANSWERS, dtype=np.float32)
+    frames = reaches(FRAMES)
+    newest = put(postures_of(frames), replace(model, continuation=replace(model.continuation, offsets=far_m)))[-1]
+    own_m2 = bones_of(joints_to_array(frames[-1].agents[0].joints))[1]
+    for each in newest.ahead:
+        assert (bones_of(joints_to_array(each.joints_m))[1] <= own_m2 * (1 + 1e-6)).all()
 
 
 @pytest.mark.parametrize(

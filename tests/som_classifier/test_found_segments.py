@@ -216,6 +216,22 @@ def test_ids_are_unique_where_anything_begins_anew() -> None:
     assert [m.segment_id for m in again if isinstance(m, Action) and m.final] == ids[:2]
 
 
+@pytest.mark.parametrize("of_before", [(), stream(66, session="earlier")], ids=["one session", "the source anew, too"])
+def test_what_was_found_before_a_restart_is_not_found_again_nor_is_its_id_used_again(
+    of_before: tuple[Posture, ...],
+) -> None:
+    """The new process gets postures once more from the beginning."""
+    model, whole = beating(tiny_model()), [*of_before, *stream(66)]
+    before = [m for m in put_by(SomClassifier(model), whole[:-20]) if isinstance(m, Action) and m.final]
+    node = SomClassifier(model)
+    node.remember(before)
+    after = [m for m in put_by(node, whole) if isinstance(m, Action) and m.final]
+    assert len(after) == 1
+    assert without_seq(before + after) == without_seq(
+        [m for m in put_by(SomClassifier(model), whole) if isinstance(m, Action) and m.final]
+    )
+
+
 def test_a_clock_that_steps_back_begins_a_new_search_with_new_ids() -> None:
     back = [p.model_copy(update={"seq": None}) for p in stream(66, first_ns=START_NS - 90 * SECOND_NS)]
     put = put_by(SomClassifier(beating(tiny_model())), [*stream(66), *back])

@@ -38,6 +38,16 @@ def test_what_was_answered_before_a_restart_is_not_answered_again() -> None:
     assert run.segmenter.is_marked(1, 2 * FRAME_NS, 3 * FRAME_NS), "nor is it found without marks"
 
 
+def test_an_id_that_was_used_again_before_a_restart_is_not_rejected_once_more() -> None:
+    frames = postures(30)
+    marks = [mark(kind, (first + 5 * (kind == "end")) * FRAME_NS) for first in (1, 11, 21) for kind in ("start", "end")]
+    before = Run().feed(*frames, *marks)
+    assert before.reasons == [None, "segment_id reused", "segment_id reused"]
+    run = Run().remember(*map(answer, before.closed)).feed(*frames, *marks)
+    assert run.closed == []
+    assert run.feed(mark("start", 25 * FRAME_NS)).reasons == ["segment_id reused"]
+
+
 def test_what_was_given_up_before_a_restart_is_not_answered_again() -> None:
     before = Run().feed(*postures(5), mark("start", 0)).wait(64)
     run = Run().remember(*map(answer, before.closed)).feed(mark("start", 0), mark("end", 9 * FRAME_NS))

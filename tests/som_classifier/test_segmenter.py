@@ -10,6 +10,8 @@ from people import FRAME_NS, STANDING, reaches, reaching, skeleton
 from pose_preprocessor.node import PosePreprocessor
 from pose_preprocessor.settings import Settings as PoseSettings
 from segmenter_runs import Run, mark, postures, stamps
+from som_classifier.frames import Frame
+from som_classifier.stream import Stream
 
 BACK_NS = 90 * SECOND_NS
 """How far a clock steps back: further than any segment reaches."""
@@ -44,6 +46,21 @@ def test_it_closes_after_two_seconds_where_the_frames_of_others_go_on() -> None:
     run.feed(*map(other, postures(25)[10:])).wait(2.0)
     assert run.closed == []
     assert stamps(run.wait(0.3).closed[0]) == list(range(10))
+
+
+def test_frames_that_are_still_to_be_captured_are_not_lost() -> None:
+    """Somebody knows beforehand how long the action takes, or has a clock that is fast."""
+    frames = postures(200)
+    run = Run().feed(*frames[:10], mark("start", 15 * FRAME_NS, agent=1), mark("end", 180 * FRAME_NS))
+    for i in range(10, len(frames), 3):
+        run.feed(*frames[i : i + 3]).wait(0.1)
+    assert [stamps(closed) for closed in run.closed] == [list(range(15, 181))]
+
+
+def test_frames_of_another_clock_than_that_of_the_marks_are_not_waited_for() -> None:
+    hours_ns = 10**5 * SECOND_NS
+    run = Run().feed(*postures(10), mark("start", hours_ns), mark("end", hours_ns + SECOND_NS)).wait(10.4)
+    assert run.reasons == ["frames lost: none came for the last 1.0 s of the segment"]
 
 
 def test_while_nobodys_frames_come_it_waits_for_ten_seconds_and_answers_with_all_that_comes() -> None:
@@ -91,6 +108,13 @@ def test_a_start_before_the_first_posture_begins_with_it() -> None:
     frames = postures(10, first_ns=50 * FRAME_NS)
     run = Run().feed(mark("start"), *frames, mark("end"))
     assert stamps(run.closed[0]) == list(range(50, 60))
+
+
+@pytest.mark.parametrize("end_ns", [None, 20 * FRAME_NS], ids=["no stamp", "a stamp of before"])
+def test_what_was_marked_before_the_first_posture_does_not_end_before_it_starts(end_ns: int | None) -> None:
+    run = Run().feed(mark("start"), mark("end", end_ns), *postures(10, first_ns=50 * FRAME_NS)).wait(2.3)
+    assert run.reasons == ["no person"]
+    assert run.closed[0].start_ns == run.closed[0].end_ns == (end_ns or 0)
 
 
 def test_segments_may_overlap() -> None:
@@ -224,6 +248,23 @@ def test_what_was_marked_before_the_stamps_began_anew_does_not_mark_the_same_sta
     assert run.segmenter.is_marked(1, first_ns, first_ns + FRAME_NS)
     run.feed(*[posture.model_copy(update=anew) for posture in postures(RESTART_AFTER)])
     assert not run.segmenter.is_marked(1, first_ns, first_ns + FRAME_NS)
+
+
+def test_frames_of_whom_none_is_usable_are_not_looked_at_again_with_each_frame(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many starts whose ends were forgotten would take the time of all others in view."""
+    looked_at: list[Frame] = []
+    between = Stream.between
+
+    def counted(stream: Stream, start_ns: int, end_ns: int) -> list[Frame]:
+        found = between(stream, start_ns, end_ns)
+        looked_at.extend(found)
+        return found
+
+    monkeypatch.setattr(Stream, "between", counted)
+    blank = {"valid": False, "joints": None, "joints_m": None, "upright": None, "motion": None, "reason": "dark"}
+    frames = [p.model_copy(update=blank) for p in postures(100)]
+    Run().feed(*[mark("start", 0, f"{i}") for i in range(8)], *frames)
+    assert len(looked_at) < 10 * len(frames)
 
 
 def test_frames_without_a_posture_belong_to_the_segment_but_not_to_the_recognition() -> None:

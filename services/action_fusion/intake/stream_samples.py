@@ -80,15 +80,18 @@ def posture_sample(posture: Posture, counters: Counters) -> PostureSample:
 
 
 def objects_sample(message: Objects, counters: Counters) -> ObjectsSample:
-    """Read the seen and the image-tracked objects, not the remembered ones; count absurdly far ones as `bad_object`."""
+    """Read the seen and the image-tracked objects, not the remembered ones; count absurd and repeated ones."""
     known = [each for each in message.objects if each.seen or each.followed] if message.valid else []
     near = [each for each in known if max(map(abs, each.position_m)) < MAX_COORDINATE_M]
     if len(near) < len(known):
         counters.reject("bad_object", f"an object beyond {MAX_COORDINATE_M:g} m at {message.stamp_ns}")
+    positions_m = {each.id: each.position_m for each in near}
+    if len(positions_m) < len(near):
+        counters.reject("repeated_object", f"{len(near)} objects, {len(positions_m)} distinct, at {message.stamp_ns}")
     return ObjectsSample(
         message.stamp_ns,
         message.session_id,
-        {each.id: each.position_m for each in near},
+        positions_m,
         {each.id: each.name for each in near},
         frozenset(each.id for each in near if not each.seen),
         {each.id: unit for each in near if each.seen and (unit := _unit(each.quaternion_xyzw)) is not None},

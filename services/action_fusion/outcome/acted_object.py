@@ -28,7 +28,7 @@ def acted_object(
         id=track.id,
         name=track.name,
         distance_m=next(one.distance_m for one in evidence.near if one.track is track),
-        carried=not track.seen.all(),
+        carried=not track.seen[track.stamps_ns >= 0].all(),
         taken_along=any(taken_along for taken_along, _ in in_hands),
         in_hand_at_end=any(in_hand_at_end for _, in_hand_at_end in in_hands),
         last_seen_ns=evidence.action.start_ns + int(track.stamps_ns[track.seen][-1]) if track.seen.any() else None,

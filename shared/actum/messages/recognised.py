@@ -65,8 +65,8 @@ class Action(Message):
     unknown: bool = False
     """Whether the segment may be none of the trained actions: it is less like `action` than most true instances are."""
     familiarity: FiniteFloat | None = None
-    """Probability that the segment is a true instance of `action`, not another movement; null in partial messages, and
-    if the model cannot compute it."""
+    """Probability that the segment is a true instance of `action`, not another movement; null in partial messages, if
+    the person was seen only during the segment's beginning, and if the model cannot compute it."""
     missing_joints: list[Name] = Field([])
     """The names of the joints that were missing in some frame for longer than 0.3 s."""
     completeness: FiniteFloat | None = None
@@ -135,8 +135,8 @@ class ActedObject(Model):
     distance_m: FiniteFloat
     """The smallest distance between the hand's joint and the object during the segment (m)."""
     carried: bool = False
-    """Whether, for a while, a hand covered the object and the object's place was taken from that hand. False for an
-    object that was always visible, even if it was lifted: see `taken_along`."""
+    """Whether, for a while during the segment, a hand covered the object and the object's place was taken from that
+    hand. False for an object that was always visible, even if it was lifted: see `taken_along`."""
     taken_along: bool = False
     """Whether the hand that acted moved the object during the segment, so that both moved together: lifted, put, pushed
     …, visible or covered."""
@@ -210,7 +210,7 @@ class Event(Message):
     hand: Hand | None
     """The hand that acted; null if unknown."""
     objects_present: list[int]
-    """The numbers of the objects seen during the segment."""
+    """The numbers of the objects seen during the segment, or up to 0.9 s before it."""
     distances_m: dict[str, FiniteFloat]
     """The smallest distance (m) between each object, by its number, and a hand that may have acted."""
     motion: Motion | None
