@@ -104,9 +104,9 @@ def shown(seed: int) -> Iterator[View]:
 
 def taken_of(seed: int) -> dict[str, object]:
     """Return what is asked for after each view that is taken, and which pairs two cameras take."""
-    one, two = ViewCollector(), PairCollector()
-    asked = [one.instruction for each in shown(seed) if one.offer(each)]
-    seen = zip(shown(seed), shown(seed + 100), strict=True)
+    one, two, views = ViewCollector(), PairCollector(), list(shown(seed))
+    asked = [one.instruction for each in views if one.offer(each)]
+    seen = zip(views, shown(seed + 100), strict=True)
     pairs = [f"{two.offer(camera, each)} {two.complete}" for both in seen for camera, each in enumerate(both)]
     numbered = {f"{number:02}": text for number, text in enumerate(asked)}
     taken = [each.corners_px for each in one.views]
