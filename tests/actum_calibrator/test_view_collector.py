@@ -61,6 +61,14 @@ def test_wishes_tell_what_is_missing_until_nothing_is() -> None:
     assert collector.complete
 
 
+def test_tilted_views_are_asked_for_first_until_half_of_ten_are_tilted() -> None:
+    places = [(x, y) for y in (20, 250) for x in (10, 120, 230, 340, 430)]
+    collector = ViewCollector()
+    for tilted in range(11):
+        collector.views = [view(*place, tilt=0.9 if n < tilted else 0.0) for n, place in enumerate(places)]
+        assert str(collector.instruction).startswith("tilt") == (tilted < 5)
+
+
 def test_a_pair_is_taken_when_the_board_rests_before_both() -> None:
     collector = PairCollector()
     stream = [(0, view(100, 100)), (1, view(50, 50)), (0, view(100, 100)), (1, view(50, 50))]

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
+from typing import NoReturn
 
 import cv2
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 
 from actum.messages import Agent
 from actum.skeletons import INDEX
-from actum_command.commands import draw_command
+from actum_command.commands import draw_command, import_commands
 from actum_command.skeleton_overlay import LEFT, MIDDLE, RIGHT, drawn, sheet
 from camera_bodies import K, as_seen, projected, standing_at
 from camera_videos import write_video
@@ -18,6 +19,7 @@ from command_lines import invoke
 from people import STANDING, lacking, listed
 from sensor_gateway.lens import Lens
 from sensor_gateway.people.landmarks import Landmarks
+from sensor_gateway.settings import Settings
 
 LENS = Lens(K, np.zeros(5), assumed=False)
 GREY = np.full((480, 640, 3), 90, np.uint8)
@@ -57,6 +59,21 @@ def test_without_a_model_the_command_says_how_to_get_one(tmp_path: Path, monkeyp
     imported = invoke("import", "video", tmp_path, tmp_path / "out")
     assert imported.exit_code == 1
     assert "actum models fetch" in " ".join(imported.stderr.split())
+
+
+def test_of_each_imported_clip_one_person_is_found_unless_more_are_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[int] = []
+
+    def estimator(settings: Settings) -> NoReturn:
+        asked.append(settings.people)
+        raise ValueError("no model is needed here")
+
+    monkeypatch.setattr(import_commands, "estimator_of", estimator)
+    for more in ([], ["--people", "3"]):
+        assert "no model is needed" in invoke("import", "video", tmp_path, tmp_path / "out", *more).stderr
+    assert asked == [1, 3]
 
 
 class Counting:

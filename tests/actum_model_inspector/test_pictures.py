@@ -206,5 +206,7 @@ def test_no_more_figures_are_drawn_than_can_be_seen(side: int, every: int) -> No
     assert len({int(unit) // 2 for unit in units}) <= MAX_FIGURES
 
 
-def test_each_of_two_dozen_actions_has_a_colour_of_its_own() -> None:
-    assert len({tuple(colour) for colour in action_colours(24).round(3)}) == 24
+def test_each_of_two_dozen_actions_has_a_colour_of_its_own_and_the_next_two_dozen_have_the_same() -> None:
+    colours = action_colours(48)
+    assert len({tuple(colour) for colour in colours[:24].round(3)}) == 24
+    np.testing.assert_array_equal(colours[24:], colours[:24])

@@ -1,6 +1,7 @@
 """What the calibrator finds for boards seen by known cameras, and what it draws and prints."""
 
 import datetime
+from collections.abc import Iterator
 
 import cv2
 import numpy as np
@@ -18,6 +19,7 @@ from actum_calibrator.intrinsics import calibration_of, estimate_intrinsics
 from actum_calibrator.marker_sheet import marker_sheet
 from actum_calibrator.pairs import Pair
 from actum_calibrator.sheet_sizes import SheetSize
+from actum_calibrator.view_collector import PairCollector, ViewCollector
 from actum_calibrator.view_set import nominal_tilts_deg, shortcomings
 from approving import Approve
 from boards import Lens, facing, good_poses
@@ -87,3 +89,33 @@ def objects(pdf: bytes) -> list[object]:
             }
             for page in document
         ]
+
+
+def shown(seed: int) -> Iterator[View]:
+    """Yield views of a board that is moved to a place and held there, more or less still, sixty times."""
+    rng = np.random.default_rng(seed)
+    place_m, turn_deg = np.array([0, 0, 0.7]), np.zeros(3)
+    for number in range(60):
+        for step in 10 ** rng.uniform([-2, -4], [-0.6, -2.3]):
+            place_m = np.clip(place_m + rng.normal(0, step, 3), (-0.25, -0.2, 0.4), (0.25, 0.2, 1.0))
+            turn_deg = np.clip(turn_deg + rng.normal(0, 150 * step, 3), -35, 35)
+            yield view(MARKERS_LENS, facing(BOARD, place_m, turn_deg), f"view {number}", number)
+
+
+def taken_of(seed: int) -> dict[str, object]:
+    """Return what is asked for after each view that is taken, and which pairs two cameras take."""
+    one, two, views = ViewCollector(), PairCollector(), list(shown(seed))
+    asked = [one.instruction for each in views if one.offer(each)]
+    seen = zip(views, shown(seed + 100), strict=True)
+    pairs = [f"{two.offer(camera, each)} {two.complete}" for both in seen for camera, each in enumerate(both)]
+    numbered = {f"{number:02}": text for number, text in enumerate(asked)}
+    taken = [each.corners_px for each in one.views]
+    return {"asked": numbered, "taken": taken, "complete": one.complete, "pairs": pairs}
+
+
+def test_views_are_taken_and_asked_for_as_approved(approve: Approve) -> None:
+    growing, asked = ViewCollector(), {}
+    for each in VIEWS:
+        growing.views.append(each)
+        asked[each.name] = growing.instruction
+    approve("views", {"good": asked, **{f"shown {seed}": taken_of(seed) for seed in (0, 5)}}, 1e-5)

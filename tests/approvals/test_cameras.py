@@ -16,12 +16,15 @@ from rendered_bodies import Person, depth_of, landmarks_of, person
 from sensor_gateway.captured_picture import DepthPicture, Picture
 from sensor_gateway.lens import Lens
 from sensor_gateway.optics import DepthOptics, Optics
+from sensor_gateway.people.identities import Identities
 from sensor_gateway.people.landmarks import Landmarks
 from sensor_gateway.perceiver import Perceiver
 
 WIDTH, HEIGHT = 320, 240
 LENS = Lens.of_field_of_view(WIDTH, HEIGHT, 60.0)
 FRAME_NS = SECOND_NS // 10
+SEEDS = (1, 5)
+"""Crowds whose numbers depend on every constant of the tracking."""
 
 
 class Scripted:
@@ -72,6 +75,30 @@ def test_people_before_a_depth_camera_are_placed_as_approved(approve: Approve) -
         for i, bodies in enumerate(people)
     ]
     approve("depth-camera", skeletons, 1e-5)
+
+
+def crowd(seed: int) -> Iterator[dict[int, NDArray[np.float64]]]:
+    """Yield who is found where, in any order: four people cross one another's ways and are lost for 0.7 s or longer."""
+    rng, people, frames, lost_for = np.random.default_rng(seed), 4, 220, 11
+    starts, speeds = rng.uniform(0, 2 * np.pi, (2, people, 1, 3)), rng.uniform(0.2, 1.4, (2, people, 1, 3))
+    x, z = np.sin(np.arange(frames)[:, None] / 15 * speeds + starts).sum(axis=3)
+    places = np.stack([0.5 * x, 0 * x, 3 + 0.35 * z], axis=2) + rng.normal(0, 0.03, (people, frames, 3))
+    places *= rng.normal(1, 0.06, (people, frames, 1))
+    lost = np.repeat(rng.random((people, frames // lost_for)) < 0.35, lost_for, axis=1)
+    for i in range(frames):
+        yield {int(one): places[one, i] for one in rng.permutation(people) if not lost[one, i]}
+
+
+def numbers_in(seed: int) -> list[dict[str, int]]:
+    people, numbers = Identities(), []
+    for i, found in enumerate(crowd(seed)):
+        of = dict(zip(found, people.step(i * SECOND_NS // 15, list(found.values())), strict=True))
+        numbers.append({f"person {one}": of.get(one, 0) for one in range(4)})
+    return numbers
+
+
+def test_the_people_of_a_crowd_are_numbered_as_approved(approve: Approve) -> None:
+    approve("crowds", {f"crowd {seed}": numbers_in(seed) for seed in SEEDS})
 
 
 def measured(bodies: list[Person], seed: int) -> NDArray[np.float32]:

@@ -1,12 +1,17 @@
 """What is detected of markers that are small, steep, blurred, in shadow or covered in part."""
 
+from collections.abc import Iterator
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from actum.node import SECOND_NS
 from approving import Approve
 from marker_tracker.detection.detector import MarkerDetector
 from marker_tracker.detection.families import family
+from marker_tracker.pose.pose_tracks import Tracks
+from marker_tracker.pose.poses import Measurement, Pose
 
 COLUMNS, ROWS, PLACE_PX = 4, 3, 160
 TEXELS, QUIET, PAPER, INK = 16, 2, 220, 40
@@ -46,6 +51,46 @@ def test_markers_that_are_hard_to_see_are_found_as_approved(approve: Approve) ->
         detector = MarkerDetector({name: ()} if seed % 2 else {name: range(12)})
         found[f"{name} {shrunk}"] = detector.search(picture(name, seed, blur_px, shrunk))
     approve("markers", found, 1e-5, besides={"covered": 3e-2, "photometric": 2e-4})
+
+
+def measurements(seed: int) -> Iterator[tuple[int, list[Measurement]]]:
+    """Yield what is measured of six objects: each is moved now and then, measured wrongly, covered and lost."""
+    rng, noise_m, objects = np.random.default_rng(seed), np.array([0.001, 0.001, 0.006]), range(6)
+    places_m, speeds_mps = rng.uniform((-0.3, -0.3, 1.2), (0.3, 0.3, 1.8), (6, 3)), np.zeros((6, 3))
+    moves, lost, covered, wrong = (rng.random((150, 6)) < share for share in (0.06, 0.35, 0.15, 0.05))
+    for i in range(150):
+        speeds_mps = np.where(moves[i][:, None], rng.normal(0, 0.4, (6, 3)), 0.9 * speeds_mps)
+        places_m = places_m + speeds_mps / 30
+        seen = places_m + rng.normal(0, 1, (6, 3)) * noise_m + wrong[i][:, None] * rng.normal(0, 0.07, (6, 3))
+        yield (
+            SECOND_NS + i * SECOND_NS // 30,
+            [
+                Measurement(one, "cup", poses(rng, seen[one]), np.diag(noise_m**2), 0.9, bool(covered[i // 5, one]))
+                for one in objects
+                if not lost[i // 5, one]
+            ],
+        )
+
+
+def poses(rng: np.random.Generator, position_m: NDArray[np.float64]) -> list[Pose]:
+    """Return two poses that mirror each other; the first fits better in most pictures, the second in others."""
+    both = []
+    for tilt, error_px in ((0.4, 0.1), (-0.4, 0.13)):
+        pose = np.eye(4)
+        pose[:3, :3], pose[:3, 3] = cv2.Rodrigues(rng.normal((tilt, 0, 0), 0.02))[0], position_m
+        both.append(Pose(pose, error_px * rng.uniform(0.5, 1.5)))
+    return sorted(both, key=lambda each: each.error_px)
+
+
+def test_objects_are_tracked_as_approved(approve: Approve) -> None:
+    given = {}
+    for seed in (2, 6):
+        tracks = Tracks(SECOND_NS)
+        given[str(seed)] = [
+            {"held back": len(tracks.update(stamp_ns, found)), "listed": tracks.listed(stamp_ns)}
+            for stamp_ns, found in measurements(seed)
+        ]
+    approve("object-tracks", given, 1e-6)
 
 
 def test_markers_that_move_are_followed_as_approved(approve: Approve) -> None:

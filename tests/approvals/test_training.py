@@ -73,6 +73,16 @@ def continued(model: Model) -> list[object]:
     return [continuation_of(model).ahead(frames[end - 15 : end]) for end in ends]
 
 
+def recognised(model: Model) -> list[object]:
+    """Return what a model says of the first half of each act, and of all of it."""
+    frames = encoded_live(model, OTHERS)
+    return [
+        model.recognise(frames[act.first : act.first + round(share * (act.last - act.first)) + 1], share == 1.0)
+        for act in OTHERS.acts
+        for share in (0.5, 1.0)
+    ]
+
+
 def test_a_model_of_the_default_kind_learns_what_is_approved(approve: Approve) -> None:
     model = with_continuation(spotting_model(), taught().streams)
     approve("model", {"learnt": learnt(model), "continued": continued(model)}, 1e-4, PLACED)
@@ -80,7 +90,8 @@ def test_a_model_of_the_default_kind_learns_what_is_approved(approve: Approve) -
 
 def test_a_model_of_the_paper_s_kind_learns_what_is_approved(approve: Approve) -> None:
     model = with_continuation(train(taught().usable, FROM_TORSO), taught().streams)
-    approve("model-paper", {"learnt": learnt(model), "continued": continued(model)}, 1e-4)
+    given = {"learnt": learnt(model), "continued": continued(model), "recognised": recognised(model)}
+    approve("model-paper", given, 1e-4)
 
 
 def test_a_model_learns_added_examples_as_approved(approve: Approve, monkeypatch: pytest.MonkeyPatch) -> None:

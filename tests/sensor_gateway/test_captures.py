@@ -1,7 +1,11 @@
 """Pictures of files and devices: their stamps, their pace, and that a device's old ones are left out."""
 
 import sys
+import threading
+import time
+from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import numpy as np
@@ -135,6 +139,23 @@ def test_a_device_gives_its_newest_picture_and_what_came_before_is_left_out(tmp_
     assert round(float(newest.image_bgr.mean())) == pytest.approx(20 + 10 * 19, abs=2)
     with pytest.raises(CameraLostError, match="no more pictures"):
         capture.next(0.0)
+
+
+def test_a_device_s_picture_is_given_as_soon_as_it_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    over, patience_s = threading.Event(), 5.0
+
+    def read() -> Iterator[tuple[bool, np.ndarray]]:
+        yield True, np.full((2, 2, 3), 7)
+        over.wait()
+        yield False, np.empty(0)
+
+    device = SimpleNamespace(isOpened=lambda: True, read=read().__next__, release=lambda: None)
+    monkeypatch.setattr(LiveCapture, "_opened", lambda _: device)
+    capture, began_s = LiveCapture(0), time.monotonic()
+    assert isinstance(capture.next(patience_s), Picture)
+    assert time.monotonic() - began_s < patience_s
+    over.set()
+    capture.close()
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists its cameras")

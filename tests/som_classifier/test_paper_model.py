@@ -45,6 +45,18 @@ def test_confidence_is_the_winners_share_of_the_cosines_by_hand() -> None:
     assert answer.confidence == pytest.approx(1.0 / (1.0 + np.exp(-2.0)))
 
 
+@pytest.mark.parametrize("off_deg", [5.0, 45.0, 80.0, 89.0])
+def test_two_actions_that_are_equally_like_a_way_share_the_confidence_however_unlike_both_are(off_deg: float) -> None:
+    model = paper_model()
+    answered, off = np.arctan(np.exp(-2.0)), np.radians(off_deg)
+    axes = np.array([[np.cos(answered + side), np.sin(answered + side)] for side in (off, -off)])
+    answer = PaperModel(model.layer1, model.layer2, SupervisedLayer(axes), model.metadata).recognise(
+        walk(0, 3, 6), True
+    )
+    assert list(answer.activations.values()) == pytest.approx([np.cos(off)] * 2)
+    assert answer.confidence == pytest.approx(0.5)
+
+
 def test_a_negative_cosine_is_no_confidence() -> None:
     model = paper_model()
     against = PaperModel(model.layer1, model.layer2, SupervisedLayer(-np.eye(2)), model.metadata)
