@@ -18,7 +18,7 @@ from action_fusion.intake.buffers import Hands
 from action_fusion.tracks.comotion import Comotion, comotion
 from action_fusion.tracks.hand_tracks import HandTrack, known_smoothed
 from action_fusion.tracks.object_tracks import ObjectTrack
-from action_fusion.tracks.paths import bounds_m, interpolated
+from action_fusion.tracks.track import bounds_m
 from actum import core
 from actum.arrays import Array, Mask, joints_to_array
 from actum.core import steps
@@ -321,12 +321,12 @@ def test_hands_come_nearer_to_objects_by_the_same_share(instants: int, asked: fl
 
 
 @given(st.integers(1, 50), st.integers(0, 50), st.integers(0, 2**32 - 1))
-def test_paths_are_the_same_to_the_bit_at_stamps_in_any_order(known: int, asked: int, seed: int) -> None:
+def test_tracks_are_the_same_to_the_bit_at_stamps_in_any_order(known: int, asked: int, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    stamps_ns, positions_m = wandering(rng, known)
-    at_ns = rng.choice(np.concatenate([stamps_ns, rng.uniform(-3e9, 3e9, 50)]), asked)
-    np.testing.assert_array_equal(*both(lambda: interpolated(at_ns, stamps_ns, positions_m)))
-    np.testing.assert_array_equal(*both(lambda: bounds_m(positions_m)))
+    track = HandTrack("right", *wandering(rng, known))
+    at_ns = rng.choice(np.concatenate([track.stamps_ns, rng.uniform(-3e9, 3e9, 50)]), asked)
+    np.testing.assert_array_equal(*both(lambda: track.at(at_ns)))
+    np.testing.assert_array_equal(*both(lambda: bounds_m(track.positions_m)))
 
 
 @given(st.integers(0, 100), st.sampled_from([0.0, 0.3, 1.0]), st.integers(0, 1), st.integers(0, 2**32 - 1))

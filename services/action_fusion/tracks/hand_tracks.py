@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from action_fusion.intake.buffers import LOOK_BACK_NS, Hands
-from action_fusion.tracks.paths import bounds_m, interpolated
+from action_fusion.tracks.track import Track
 from actum.arrays import Array, Indices, Mask
 from actum.core import steps
 from actum.messages import Hand
@@ -42,7 +42,7 @@ HESITATION_M = 0.10
 
 
 @dataclass(frozen=True, eq=False)
-class HandTrack:
+class HandTrack(Track):
     """A hand's n known instants, one or more: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera
     frame."""
 
@@ -61,15 +61,6 @@ class HandTrack:
         """Mask (n,) of the instants in the segment or at most `LOOK_BACK_NS` before it."""
         recent: Mask = self.stamps_ns >= -LOOK_BACK_NS
         return recent
-
-    @cached_property
-    def bounds_m(self) -> Array:
-        """The least and the greatest coordinates (2, 3) of the positions."""
-        return bounds_m(self.positions_m)
-
-    def at(self, stamps_ns: Array) -> Array:
-        """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
-        return interpolated(stamps_ns, self.stamps_ns, self.positions_m)
 
     def speeds_m_per_s(self) -> Array:
         """Measure the speed (n,) over a fifth of a second around each instant."""

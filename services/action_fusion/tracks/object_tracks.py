@@ -9,7 +9,7 @@ import numpy as np
 
 from action_fusion.intake.buffers import Sightings
 from action_fusion.intake.stream_samples import ObjectsSample
-from action_fusion.tracks.paths import bounds_m, interpolated
+from action_fusion.tracks.track import Track, bounds_m
 from actum.arrays import Array, Mask, median
 from actum.node import SECOND_NS
 
@@ -33,7 +33,7 @@ MAD_TO_STD = 0.6745
 
 
 @dataclass(frozen=True, eq=False)
-class ObjectTrack:
+class ObjectTrack(Track):
     """An object's n positions: `stamps_ns` (n,) from the segment's start, `positions_m` (n, 3), camera frame.
 
     `seen` (n,) marks the sightings; the other positions are image-tracked, or inferred from the hand that occludes
@@ -51,10 +51,6 @@ class ObjectTrack:
     def label(self) -> str:
         """The object's name in sentences, e.g. `object 3 "cup"`."""
         return f'object {self.id} "{self.name}"'
-
-    def at(self, stamps_ns: Array) -> Array:
-        """Interpolate positions (p, 3) at stamps (p,) linearly, constant beyond both ends."""
-        return interpolated(stamps_ns, self.stamps_ns, self.positions_m)
 
     def turn(self, moved_m: float) -> int | None:
         """Find the index of the turn of an object that came back: its position in the segment furthest from the start.
@@ -102,11 +98,6 @@ class ObjectTrack:
     def is_displaced(self, moved_m: float) -> bool:
         """Whether the object is displaced by `moved_m` or more."""
         return self.extent_m >= moved_m and math.hypot(*self.displacement_m(moved_m).tolist()) >= moved_m
-
-    @cached_property
-    def bounds_m(self) -> Array:
-        """The least and the greatest coordinates (2, 3) of the positions."""
-        return bounds_m(self.positions_m)
 
     @cached_property
     def extent_m(self) -> float:
