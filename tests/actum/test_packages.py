@@ -3,6 +3,9 @@
 import tomllib
 from pathlib import Path
 
+from actum_command.processes import SCENE
+from actum_command.service_settings import SETTINGS
+from actum_deployer.roles import ROLES
 from collected_texts import PACKAGES
 
 ROOT = Path(__file__).parents[2]
@@ -30,6 +33,11 @@ def test_every_package_has_its_layer() -> None:
 def test_no_package_knows_zenoh_and_none_has_a_circle() -> None:
     assert set(contract("only the runtime knows Zenoh")["source_modules"]) >= SERVICES
     assert set(contract("no import circles")["ancestors"]) == SERVICES | {"actum"}
+
+
+def test_every_service_can_be_set_by_commands_and_has_a_role_in_a_deployment() -> None:
+    assert SETTINGS.keys() >= RUNNING
+    assert RUNNING - {SCENE} <= {service for role in ROLES for service in role.services}
 
 
 def test_what_every_service_rejects_is_searched_for() -> None:

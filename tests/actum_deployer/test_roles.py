@@ -65,6 +65,11 @@ def patterns(topics: Sequence[Topic], sensor: str = "kinect0") -> set[str]:
     return {keys.pattern(topic, sensor) for topic in topics}
 
 
+def test_what_each_service_reads_is_compared_with_its_role() -> None:
+    sources_and_bridges = {"sensor_gateway", "marker_camera", "ros2_bridge"}
+    assert {node.name for node in NODES} == BY_SERVICE.keys() - sources_and_bridges
+
+
 @pytest.mark.parametrize("node", NODES, ids=lambda node: node.name)
 def test_a_service_may_read_what_its_node_reads(node: type) -> None:
     assert {*node.inputs} <= {*BY_SERVICE[node.name].reads}

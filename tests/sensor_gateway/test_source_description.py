@@ -1,13 +1,17 @@
 """What a gateway says that it reads."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import pytest
 
 from camera_videos import write_video
-from sensor_gateway.settings import Settings
-from sensor_gateway.sources import description
+from sensor_gateway.settings import Settings, SourceName
+from sensor_gateway.sources import CAMERAS, description
+
+
+def test_every_source_that_can_be_named_is_a_camera_or_recordings() -> None:
+    assert {*get_args(SourceName)} == {*CAMERAS, "recording"}
 
 
 @pytest.mark.parametrize(
