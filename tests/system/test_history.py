@@ -77,6 +77,7 @@ def test_a_killed_one_leaves_what_it_was_told_and_the_next_goes_on(running: Syst
         running.wait_for_services(client, "event_recorder")
         put(client, "after")
         wait_until(lambda: events_in(folder)[-1:] == ["after"], "it goes on")
+        wait_until(lambda: len(stored(folder)) >= 6, "of both segments mark, action and event are stored")
     assert events_in(folder) == ["before", "after"]
     assert len(stored(folder)) == 6, "what the next is told once more is stored once"
     assert len(list(folder.iterdir())) == 2
