@@ -28,9 +28,9 @@ FILES_ELSEWHERE = {
 }
 """The sources that play no file, each with how a file is named instead."""
 
-DEPTH_CAMERAS = (
-    ". For depth cameras use --source none, and start a gateway for each sensor on a host of its own, because each "
-    "gateway opens the first depth camera that it finds"
+CAMERAS_ELSEWHERE = (
+    ". For cameras use --source none, and start a gateway for each sensor on a host of its own, because each "
+    "gateway opens the first camera that it finds"
 )
 """What to do with several cameras that no setting tells apart instead of their recordings."""
 
@@ -94,10 +94,10 @@ def refuse_shared_source(source: str, given: Given, settings: ServiceSettings) -
     named = given.get(setting, [])
     if count == 1 or source in SENSORS or not isinstance(named, list) or len(named) == count:
         return
-    flag, depth = flag_of(setting), "" if source in ("camera", "recording") else DEPTH_CAMERAS
+    flag, hosts = flag_of(setting), "" if source in ("camera", "recording") else CAMERAS_ELSEWHERE
     raise SettingsError(
         f"--source {source} for {count} sensors needs {flag} {count} times, but {flag} is given {len(named)} times: "
-        f"give {flag} once for each sensor, in the order of the sensors{depth}"
+        f"give {flag} once for each sensor, in the order of the sensors{hosts}"
     )
 
 

@@ -96,7 +96,7 @@ class FrontService(NodeService):
 
     @property
     def is_healthy(self) -> bool:
-        """Whether its subscriptions are read, and people are served."""
+        """Whether its subscriptions are read, and its thread runs."""
         return super().is_healthy and self._front.working
 
 

@@ -11,7 +11,8 @@ from zenoh import ext, handlers
 ANSWER_S = 1.0
 """How long publishers may take to send what they keep (s)."""
 MOST_SOURCES = 1024
-"""Publishers whose newest number is remembered: the one that is silent for longest makes room. Gaps as well."""
+"""Publishers whose newest number is remembered: the one that is silent for longest makes room.
+As many reports of Zenoh's subscriber are kept, that it has left messages of a publisher out."""
 Source = tuple[str, int]
 """A publisher: its session's id and its number in this session."""
 
@@ -79,7 +80,7 @@ class RecoveringSubscriber:
         late = past and ext.HistoryConfig(detect_late_publishers=True, max_samples=past.most, max_age=past.age_s)
         channel: handlers.RingChannel[zenoh.Sample] = handlers.RingChannel(ring)
         recovery = ext.RecoveryConfig(heartbeat=True, periodic_queries=None)
-        self._session, self._past = session, past
+        self._session = session
         self._subscriber = ext.declare_advanced_subscriber(session, key_expr, channel, history=late, recovery=recovery)
         self._live = self._subscriber.handler  # which ends quietly where the subscriber is undeclared
         misses: handlers.RingChannel[ext.Miss] = handlers.RingChannel(MOST_SOURCES)
@@ -87,7 +88,7 @@ class RecoveringSubscriber:
         self._kept = past and Kept(session, key_expr, past.selected)
         self._taken: deque[zenoh.Sample] = deque()
         self._newest: dict[Source, int] = {}
-        self._gaps: list[Source] = []
+        self._gaps: deque[Source] = deque(maxlen=MOST_SOURCES)
         self._is_undeclared = False
 
     def __iter__(self) -> Iterator[zenoh.Sample]:
